@@ -114,7 +114,10 @@ SLIDERS = [
 ]
 SCENES = [
     (scene("drive.frequency_hz=1e300"), r"drive\.frequency_hz = 1e\+300 Hz .* check the beam's units"),
-    (scene("drive.kind=voltage"), r"drive\.kind = 'voltage' is not known: known are force, displacement"),
+    (scene("drive.kind=charge"), r"drive\.kind = 'charge' is not known: known are force, moment, displacement"),
+    (scene("drive.kind=voltage"), r"drive\.actuator is missing: drive\.kind = 'voltage' needs the design"),
+    (scene("drive.actuator.kind=stak"), r"drive\.actuator\.kind = 'stak' is not known: did you mean 'stack'"),
+    (scene("drive.actuator.layers=3"), r"drive\.actuator\.kind is missing: give one of stack, bar-33"),
     (scene("drive.force.0.position=0.6"), r"drive\.force\.position = 0\.6 lies off the beam"),
     (scene("drive.force.0.position=0.0"), r"drive\.force\.position = 0\.0 m is on a pinned support"),
     (scene("slider.position=0.51"), r"slider\.position = 0\.51 lies off the beam"),

@@ -38,15 +38,10 @@ def convert(data: Any, kind: type[T], where: str = "") -> T:
 
 def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     """A sentence for every error; the constraints between fields are checked where each field is valid."""
-    table, inside = table_of(kind), list[str]()
     if len(tables := structs_of(kind)) > 1 and isinstance(data, dict):
-        table = kind = tables.get(data.get("kind", ""))
-        if table is None:
-            word, names = data.get("kind"), tuple(tables)
-            known = f" = {shown(word)} is not known: {near_name(str(word), names)}"
-            yield f"{where}.kind{known}" if word else f"{where}.kind is missing: give one of {', '.join(names)}"
-            return
-        data = {key: value for key, value in data.items() if key != "kind"}
+        yield from _tagged_errors(data, tables, where)
+        return
+    table, inside = table_of(kind), list[str]()
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
@@ -75,6 +70,17 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
             yield from error.__cause__.sentences
         else:
             yield sentence(where, data, kind, str(error))
+
+
+def _tagged_errors(data: dict[str, Any], tables: dict[str, Any], where: str) -> Iterator[str]:
+    """A sentence for every error of a table whose key `kind` selects one of several structs."""
+    own, names = data.get("kind"), tuple(tables)
+    if own in tables:
+        yield from _errors({key: value for key, value in data.items() if key != "kind"}, tables[own], where)
+    elif own is None:
+        yield f"{where}.kind is missing: give one of {', '.join(names)}"
+    else:
+        yield f"{where}.kind = {shown(own)} is not known: {near_name(str(own), names)}"
 
 
 def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:

@@ -59,6 +59,7 @@ SCENES = {
     "device": scene_of(DAMPED, devices=(ENDED,)),
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
+    "actuated": scene_of(STRIP, actuator=Stack(layers=20, layer_thickness=5e-4, area=25e-6)),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
@@ -120,6 +121,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"actuator.{name}": ("stack", {}) for name in ("resonance", "antiresonance", "coupling", "branch")},
     "actuator.impedance": ("stack", {"frequency_hz": 7e4}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
+    **{f"shunt.{n}": ("bare", {"coupling": 0.17, "circuit": "parallel"}) for n in ("peak", "optimum")},
+    **{f"shunt.{n}": ("actuated", {"position": 0.083}) for n in ("absorber", "reflection")},
     "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
 }

@@ -26,18 +26,12 @@ from verify.validation import check_number, unit, validate
 class Laminate(msgspec.Struct, frozen=True, kw_only=True):
     """The section of a beam under its patch, short-circuited. SI."""
 
-    neutral_axis: float
-    """Distance from the beam's mid-plane to the neutral line, towards the patch, m."""
-    lever: float
-    """Distance from the neutral line to the middle of a layer, m."""
-    axial_stiffness: float
-    """EA, N."""
-    bending_stiffness: float
-    """EI, N m^2."""
-    mass_per_length: float
-    """kg/m."""
-    rotary_inertia: float
-    """rho I about the neutral line, kg m."""
+    neutral_axis: float  # distance from the beam's mid-plane to the neutral line, towards the patch, m
+    lever: float  # distance from the neutral line to the middle of a layer, m
+    axial_stiffness: float  # EA, N
+    bending_stiffness: float  # EI, N m^2
+    mass_per_length: float  # kg/m
+    rotary_inertia: float  # rho I about the neutral line, kg m
     extreme_fibre: float
     """Distance from the neutral line to the beam's bare surface, or with two layers to that of a layer, m."""
 
@@ -69,18 +63,20 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
             validate(section, "patch.substrate")
             piece = piece_of(set_fields(section), 1.0, "patch.substrate", 0.33)
             if section.shape not in (None, "rectangle") or piece.youngs_modulus is None or not section.width:
-                raise InputError(
-                    "patch.substrate: a patch is on a rectangular section, give the beam's width, thickness, "
-                    "youngs_modulus and density"
-                )
+                sizes = "width, thickness, youngs_modulus and density"
+                raise InputError(f"patch.substrate: a patch is on a rectangular section, give the beam's {sizes}")
             if self.width is not None:
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 
     @property
+    def ceramic(self) -> PiezoMaterial:
+        """The material's constants."""
+        return PIEZO[self.material] if isinstance(self.material, str) else self.material
+
+    @property
     def _constants(self) -> tuple[complex, complex, complex]:
         """(s11E, e31 = d31/s11E, epsS = epsT33 (1 - k31^2)) of a narrow layer: 1/Pa, C/m^2, F/m."""
-        material = PIEZO[self.material] if isinstance(self.material, str) else self.material
-        s, d, permittivity = material.bar_constants("31")
+        s, d, permittivity = self.ceramic.bar_constants("31")
         return s, d / s, permittivity - d**2 / s
 
     def bonded(self, beam: Beam) -> "Patch":
@@ -88,20 +84,19 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         return replace(self, substrate=CrossSection(**set_fields(beam)))
 
     @property
-    def _sizes(self) -> tuple[float, float, float]:
-        """(width of the patch, width and thickness of the beam), m. Raises InputError without a beam."""
+    def _sizes(self) -> tuple[float, float]:
+        """(width of the patch, thickness of the beam), m. Raises InputError without a beam."""
         section = self.substrate
         if section is None or section.width is None or section.thickness is None:
             raise InputError("patch.substrate is missing: bond the patch to a beam first, patch.bonded(beam)")
-        return self.width or section.width, section.width, section.thickness
+        return self.width or section.width, section.thickness
 
     @property
     def laminate(self) -> Laminate:
         """The transformed section over the patch, real parts of its moduli. Raises InputError without a beam."""
-        (width, _, h), t, n = self._sizes, self.thickness, self.sides
+        (width, h), t, n = self._sizes, self.thickness, self.sides
         bare = piece_of(set_fields(self.substrate), 1.0, "patch.substrate", 0.33)  # type: ignore[arg-type]
-        material = PIEZO[self.material] if isinstance(self.material, str) else self.material
-        layer, mass = (1.0 / self._constants[0]).real * width * t, material.density * width * t
+        layer, mass = (1.0 / self._constants[0]).real * width * t, self.ceramic.density * width * t
         axial, distance = bare.axial_stiffness + n * layer, 0.5 * (h + t)
         offset = layer * distance / axial if n == 1 else 0.0
         lever = distance - offset
@@ -125,7 +120,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
     def capacitance(self) -> complex:
         """C at equal slopes of both ends, F: n epsS area/t, and for a unimorph the charge of its free extension."""
         _, e31, permittivity = self._constants
-        (width, _, _), n = self._sizes, self.sides
+        (width, _), n = self._sizes, self.sides
         extension = (e31 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
         return self.length * (n * permittivity * width / self.thickness + extension)
 
@@ -159,7 +154,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         laminate = {
             name: getattr(section, name)
             for name in ("bending_stiffness", "mass_per_length", "rotary_inertia", "extreme_fibre")
-        }
+        } | {"shear_stiffness": beam.base_section.shear_stiffness}
         centres = sorted(positions) if hasattr(positions, "__iter__") else [positions]
         sections, end = list[Section](), 0.0
         for centre in centres:

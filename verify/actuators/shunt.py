@@ -10,26 +10,28 @@ relative to the static deflection with short-circuited electrodes (N. W. Hagood,
 
 Sources of the optima. Resistor and "hagood": Hagood and von Flotow. Series R-L: exact equal peaks of least height,
 P. Soltani et al., Smart Mater. Struct. 23:125014 (2014), after T. Asami, O. Nishihara, J. Vib. Acoust. 125:398 (2003).
-There 1/|H|^2 exceeds its least value 1/peak^2 by a squared quadratic in omega^2 over |s C + Y|^2 with the constant
-term b^2 = 1 - 1/peak^2; the double root of the relation between p and b gives the optimum. The same reduction of the
-parallel R-L circuit leaves a quartic for b; its approximation by fixed points is p = 2/(2 - K^2), peak sqrt(2)/K
-(K. Yamada et al., J. Sound Vib. 329:5036 (2010)).
+There 1/|H|^2 = 1/peak^2 + (p x^2 + a x + b)^2/|p s^2 + r s + 1|^2 with x = -s^2, b^2 = 1 - 1/peak^2; a double root of
+the relation between p and b is the optimum. The same reduction of the parallel R-L circuit leaves a quartic for b,
+which fixed points approximate: p = 2/(2 - K^2), peak sqrt(2)/K (K. Yamada et al., J. Sound Vib. 329:5036 (2010)).
 """
 
-from math import pi, sqrt
-from typing import Annotated, Any, Literal, cast, get_args
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 import msgspec
-import numpy as np
-from numpy.polynomial import Polynomial
 
 from verify.actuators.port import Port
 from verify.errors import InputError
 from verify.validation import check_choice, check_number, unit, validate
 
+if TYPE_CHECKING:
+    from verify.actuators.patch import Patch
+    from verify.linear.modes import Modes
+
 Circuit = Literal["resistor", "resistor-loss", "series", "parallel", "hagood", "negative-series", "negative-parallel"]
 """Shunts with an optimum: least peak by a resistor, a series or parallel R-L circuit, or a resistor in series or
 parallel with a negative capacitance; most loss by a resistor; the transfer-function rule of Hagood and von Flotow."""
+Connection = Literal["series", "parallel"]
 
 
 class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -44,7 +46,7 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """L, H."""
     capacitance: Annotated[float, unit("F")] | None = None
     """C, F; negative for an active circuit."""
-    connection: Literal["series", "parallel"] = "series"
+    connection: Connection = "series"
     """Connection of the parts with each other."""
 
     def __post_init__(self) -> None:
@@ -56,28 +58,22 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             )
 
     @property
-    def rational(self) -> tuple[Polynomial, Polynomial]:
-        """Numerator and denominator of the admittance (S) in s = i omega, without a common root at 0."""
-        r, l, c = self.resistance, self.inductance, self.capacitance
-        s = Polynomial([0.0, 1.0])
+    def rational(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Coefficients of the admittance's numerator and denominator in s = i omega, from the constant one."""
+        r, l_, c = self.resistance, self.inductance, self.capacitance
         if self.connection == "series":
-            total = (r or 0.0) + (l or 0.0) * s
-            return (Polynomial([1.0]), total) if c is None else (s, total * s + 1.0 / c)
-        total = (1.0 / r if r else 0.0) + (c or 0.0) * s
-        return (total, Polynomial([1.0])) if l is None else (total * s + 1.0 / l, s)
+            return ((1.0,), (r or 0.0, l_ or 0.0)) if c is None else ((0.0, 1.0), (1.0 / c, r or 0.0, l_ or 0.0))
+        total = (1.0 / r if r else 0.0, c or 0.0)
+        return (total, (1.0,)) if l_ is None else ((1.0 / l_, *total), (0.0, 1.0))
 
     def admittance(self, omega: Any) -> Any:
         """Current over voltage at angular frequencies (rad/s), S."""
-        above, below = self.rational
-        s = 1j * np.asarray(omega)
-        return (above(s) / below(s))[()]
+        above, below = (sum(c * (1j * omega) ** i for i, c in enumerate(row)) for row in self.rational)
+        return above / below
 
 
 class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
-    """One undamped mode with an actuator of constant capacitance; the units of the default are C and omega.
-
-    Raises InputError for an invalid value.
-    """
+    """One undamped mode with an actuator, by default in units of C and omega. Raises InputError."""
 
     coupling: Annotated[float, unit("dimensionless", gt=0)]
     """K = sqrt((omega_open/omega_short)^2 - 1)."""
@@ -93,48 +89,69 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
     def measured(cls, short_hz: float, open_hz: float, capacitance: float) -> "ShuntedMode":
         """The mode of a structure from its frequencies with short-circuited and open electrodes. Raises InputError."""
         check_number("short_hz", short_hz, "hertz", above=0)
-        check_number("open_hz", open_hz, "hertz", above=short_hz)
+        check_number("open_hz", open_hz, "hertz", above=float(short_hz))
         ratio = sqrt((open_hz - short_hz) * (open_hz + short_hz)) / short_hz
         return cls(coupling=ratio, omega=2.0 * pi * short_hz, capacitance=capacitance)
 
+    @classmethod
+    def bonded(cls, modes: "Modes", patch: "Patch", position: float, number: int) -> "ShuntedMode":
+        """A mode, from 1, of the beam from `patch.on`, with a patch centred at `position` (m).
+
+        The other modes, which turn its ends by t_m against each other, add B^2 t_m^2/(omega_m^2 - omega^2) to C. The
+        neglect of those beyond `modes` falls with 1/n_modes. Raises InputError for a mode without coupling.
+        """
+        ends = [position - 0.5 * patch.length, position + 0.5 * patch.length]
+        turning = patch.moment_per_volt.real * modes.slope(ends) @ [-1.0, 1.0]
+        squares = (2.0 * pi * modes.frequencies_hz) ** 2
+        own = squares[number - 1]
+        others = squares != own
+        c = patch.capacitance.real + float((turning[others] ** 2 / (squares[others] - own)).sum())
+        return cls(coupling=abs(turning[number - 1]) / sqrt(c * own), omega=sqrt(own), capacitance=c)
+
     def stiffness(self, load: Load, omega: Any) -> Any:
         """1 + K^2 X, stiffness over that with short-circuited electrodes, at angular frequencies (rad/s)."""
-        own = 1j * np.asarray(omega) * self.capacitance
+        own = 1j * omega * self.capacitance
         return 1.0 + self.coupling**2 * own / (own + load.admittance(omega))
 
     def response(self, load: Load, omega: Any) -> Any:
         """H at angular frequencies (rad/s): deflection over the static one with short-circuited electrodes."""
-        return 1.0 / (self.stiffness(load, omega) - (np.asarray(omega) / self.omega) ** 2)
+        return 1.0 / (self.stiffness(load, omega) - (omega / self.omega) ** 2)
 
     def peak(self, load: Load) -> float:
         """Largest |H| over all frequencies, infinite without damping. Raises InputError for an unstable load."""
+        import numpy as np
+        from numpy.polynomial import Polynomial
         from scipy.optimize import minimize_scalar
 
         own = Polynomial([0.0, self.omega * self.capacitance])  # in s/omega, as all below
         s = Polynomial([0.0, 1.0])
-        above, below = (one(self.omega * s) for one in load.rational)
+        above, below = (Polynomial(one)(self.omega * s) for one in load.rational)
         if above.coef[0] == 0.0:  # a common root, which is no pole
             own, above = (Polynomial(one.coef[1:]) for one in (own, above))
         whole = own * below + above
-        poles = ((s**2 + 1.0) * whole + self.coupling**2 * own * below).roots()
+        below = (s**2 + 1.0) * whole + self.coupling**2 * own * below  # H = whole/below
+        poles = below.roots()
         if (poles.real > 1e-12 * abs(poles)).any() or 0.0 in poles:
             raise InputError(
                 f"shunt = {load!r} makes the mode unstable: keep a negative capacitance below the actuator's own in "
                 "parallel, and above (1 + K^2) times it in series"
             )
         if (poles.real > -1e-13 * abs(poles)).any():
-            return float("inf")
+            return inf
         # a maximum lies within some widths of a pole, where the sinh puts most points
-        around = abs(poles.imag) + abs(poles.real) * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
-        x = self.omega * np.unique(abs(around[around != 0.0]))
+        around = poles.imag + poles.real * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
+        x = self.omega * np.unique(abs(around))
+        x = x[np.diff(x, prepend=0.0) > 1e-12 * x]  # pairs of poles give each point twice but for rounding
         h = abs(self.response(load, x))
-        peaks = [h[0]]
+        peaks = [abs(whole(0.0) / below(0.0))]
         for i in 1 + np.flatnonzero((h[1:-1] >= h[:-2]) & (h[1:-1] >= h[2:])):
             step = 0.5 * (x[i + 1] - x[i - 1])
             middle = x[i - 1] + step  # its offset resolves a peak that is narrower than half the digits of x
-            best = minimize_scalar(
-                lambda t: -abs(self.response(load, middle + t * step)), bounds=(-1.0, 1.0), method="bounded"
-            )
+
+            def depth(t: float, middle: float = middle, step: float = step) -> float:
+                return -float(abs(self.response(load, middle + t * step)))
+
+            best = minimize_scalar(depth, bounds=(-1.0, 1.0), method="bounded")
             peaks.append(-best.fun)
         return float(max(peaks))
 
@@ -145,12 +162,16 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         the limit of stability, and where K is too large for an optimum of two equal peaks.
         """
         check_choice("circuit", circuit, get_args(Circuit))
-        squared, c = self.coupling**2, self.capacitance
-        if circuit.startswith("negative"):
-            return self._with_negative_capacitance(circuit.removeprefix("negative-"), negative)
-        if negative is not None:
-            raise InputError(f"negative = {negative!r} is for circuit = 'negative-series' or 'negative-parallel'")
-        connection, p = "series", 0.0
+        squared, unit_c, unit_l = self.coupling**2, self.capacitance, 1.0 / (self.capacitance * self.omega**2)
+        if (negative is None) == circuit.startswith("negative"):
+            raise InputError(
+                f"negative = {negative!r}: give it for negative-series and negative-parallel, and only there"
+            )
+        limit = {"series": 1.127, "parallel": 1.414}.get(circuit, inf)  # there the peak falls to the static deflection
+        if self.coupling > limit:
+            raise InputError(f"coupling = {self.coupling!r} has no optimum of two equal peaks: give at most {limit}")
+        connection: Connection = "parallel" if circuit.endswith("parallel") else "series"
+        p = 0.0
         if circuit == "resistor":
             r = sqrt(2.0 / (2.0 + squared))
         elif circuit == "resistor-loss":
@@ -159,21 +180,32 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
             p, r = 1.0 / (1.0 + squared), sqrt(2.0) * self.coupling / (1.0 + squared)
         elif circuit == "series":
             root = 64.0 - 16.0 * squared - 26.0 * squared**2
-            self._check(root > squared**2, "1.127")
             rest = squared * (32.0 + 27.0 * squared) / (8.0 * (8.0 + squared + sqrt(root)))  # 1 - b
             p = 1.0 / (1.0 + rest + 0.75 * squared)
             r = p * sqrt(6.0 * rest)
-        else:
-            connection = "parallel"
+        elif circuit == "parallel":
             p, r = self._parallel()
+        # a resistor beside a negative capacitance: its limits 0 and infinity have one response at the crossing
+        elif circuit == "negative-parallel":  # C - negative remains of the actuator, K^2 grows by its inverse
+            check_number("negative", negative, "farad, below the actuator's capacitance", above=0, below=unit_c)
+            ratio = 1.0 - (negative or 0.0) / unit_c
+            r = 1.0 / (ratio * sqrt(1.0 + 0.5 * squared / ratio))
+        else:  # static stiffness 1 - K^2/(negative/C - 1) stays positive
+            least = (1.0 + squared) * unit_c
+            check_number("negative", negative, "farad, above (1 + K^2) times the actuator's capacitance", above=least)
+            ratio = 1.0 - unit_c / (negative or least)
+            r = ratio / sqrt(1.0 + squared - 0.5 * squared / ratio)
         return Load(
-            resistance=r / (c * self.omega),
-            inductance=p / (c * self.omega**2) if p else None,
-            connection=cast(Literal["series", "parallel"], connection),
+            resistance=r * self.omega * unit_l,
+            inductance=p * unit_l or None,
+            capacitance=-negative if negative else None,
+            connection=connection,
         )
 
     def _parallel(self) -> tuple[float, float]:
         """(p, r) of the parallel R-L circuit, from the quartic for t = (1 - b)/K^2, which is 1/4 at K = 0."""
+        import numpy as np
+
         u = self.coupling**2
         quartic = (
             *(64.0 * u**3, 16.0 * u**2 * (u - 16.0), u * (11.0 * u**2 - 32.0 * u + 320.0)),
@@ -184,34 +216,10 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         cubic = (-64.0 * u**2, -64.0 * u * (u - 5.0), -4.0 * (5.0 * u**2 - 42.0 * u + 112.0))
         detuning = u * np.polyval((*cubic, 16.0 + 31.0 * u - 13.0 * u**2), t.real) / 3.0
         detuning /= 13.0 * u**2 - 56.0 * u + 64.0  # delta^2 - 1
-        p, rest = 1.0 / (1.0 + detuning), u * t.real
+        p, rest = 1.0 / float(1.0 + detuning), float(u * t.real)
         half, product = p * (u + detuning), p * rest * (-2.0 * p * detuning - p * rest)
-        self._check(abs(t.imag) < 1e-9 and half**2 > product and 0.0 < rest < 1.0, "1.414")
         q = half + sqrt(half**2 - product)  # (p/r)^2/(2 p)
         return p, p / sqrt(2.0 * p * q)
-
-    def _check(self, exists: bool, limit: str) -> None:
-        """Raise InputError where the equal peaks do not exist."""
-        if not exists:
-            raise InputError(
-                f"coupling = {self.coupling!r}: no optimum of two equal peaks exists, give at most {limit}"
-            )
-
-    def _with_negative_capacitance(self, connection: str, negative: float | None) -> Load:
-        """Resistor beside -`negative` farad: both limits of the resistance have one response where they cross."""
-        squared, c = self.coupling**2, self.capacitance
-        if connection == "parallel":  # of the actuator C - negative remains, K^2 grows by its inverse
-            check_number("negative", negative, "farad, below the actuator's capacitance", above=0, below=c)
-            ratio = 1.0 - cast(float, negative) / c
-            crossing, time = 1.0 + 0.5 * squared / ratio, ratio
-        else:  # static stiffness 1 - K^2/(negative/C - 1) stays positive
-            least = (1.0 + squared) * c
-            check_number("negative", negative, "farad, above (1 + K^2) times the actuator's capacitance", above=least)
-            time = 1.0 - c / cast(float, negative)
-            crossing, time = 1.0 + squared - 0.5 * squared / time, 1.0 / time
-        resistance = 1.0 / (sqrt(crossing) * time * c * self.omega)
-        kind = cast(Literal["series", "parallel"], connection)
-        return Load(resistance=resistance, capacitance=-cast(float, negative), connection=kind)
 
 
 def absorbing_load(port: Port, impedance: complex, omega: float) -> Load:
@@ -227,5 +235,8 @@ def absorbing_load(port: Port, impedance: complex, omega: float) -> Load:
             f"impedance = {impedance!r} kg/s needs an electrical load of {z.real:.6g} ohm, which is active: give an "
             "impedance with a larger real part"
         )
-    reactive = {"inductance": z.imag / omega} if z.imag > 0.0 else {"capacitance": -1.0 / (omega * z.imag)}
-    return Load(resistance=z.real or None, **reactive)
+    return Load(
+        resistance=z.real or None,
+        inductance=z.imag / omega if z.imag > 0.0 else None,
+        capacitance=-1.0 / (omega * z.imag) if z.imag < 0.0 else None,
+    )

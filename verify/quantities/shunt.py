@@ -1,0 +1,134 @@
+"""Quantities of shunted actuators: damping of one mode, absorption of a wave by an actuator with an electrical load."""
+
+from math import pi
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import Meta
+
+from verify.actuators.patch import Patch
+from verify.actuators.shunt import Circuit, Load, ShuntedMode, absorbing_load
+from verify.actuators.transducers import Longitudinal
+from verify.errors import InputError
+from verify.linear.registry import EXACT, MODELS
+from verify.quantities import options as opt
+from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.waves import FromRightEnd
+from verify.validation import Relative, check_number, unit
+
+Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with these electrodes, Hz")]
+Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
+Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
+Figure = Literal["resistance", "inductance"]
+
+
+class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
+    """A mode with an actuator, and its shunt. Without short_hz and capacitance, loads are in units of both."""
+
+    circuit: Annotated[Circuit, Meta(description="shunt; hagood: series R-L by the transfer-function rule")] = "series"
+    coupling: Annotated[Relative, Meta(gt=0, description="K; default: by open_hz and short_hz")] | None = None
+    short_hz: Hertz | None = None
+    open_hz: Hertz | None = None
+    capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, F")] = 1.0
+    negative: Annotated[Relative, Meta(gt=0, description="negative capacitance over the actuator's")] | None = None
+    mode: Annotated[int, Meta(ge=1, description="mode of the beam under the scene's patch, for coupling")] | None = None
+    position: Annotated[Place, Meta(description="centre of this patch, m from the left end")] | None = None
+
+    def best(self, scene: Scene) -> tuple[ShuntedMode, Load]:
+        """The mode and the optimum load of the circuit. Raises InputError."""
+        sources = [self.coupling, self.open_hz and self.short_hz, self.mode and self.position]
+        if sum(one is not None for one in sources) != 1:
+            values = f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}, mode = {self.mode!r}"
+            raise InputError(f"{values}: give coupling, or short_hz and open_hz, or mode and position")
+        if self.mode is not None and self.position is not None:
+            patch: Any = None if scene.drive is None else scene.drive.actuator
+            if not isinstance(patch, Patch):
+                raise InputError(f"mode = {self.mode!r} needs [drive.actuator] with kind = 'patch', or give coupling")
+            modes = MODELS[EXACT].build(patch.on(scene.beam, self.position)).modes(self.mode + 60)
+            mode = ShuntedMode.bonded(modes, patch.bonded(scene.beam), self.position, self.mode)
+        elif self.open_hz is not None and self.short_hz is not None:
+            mode = ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
+        else:
+            omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
+            mode = ShuntedMode(coupling=self.coupling or 0.0, omega=omega, capacitance=self.capacitance)
+        return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * mode.capacitance)
+
+
+def _part(load: Load, figure: Figure) -> float:
+    """Resistance (ohm) or inductance (H) of an optimum load. Raises InputError where it has none."""
+    value: float | None = getattr(load, figure)
+    if value is None:
+        raise InputError(f"{figure}: the optimum {load!r} has none, choose another circuit")
+    return value
+
+
+@quantity("shunt.peak", unit="1", reads=("beam", "drive"))
+def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
+    """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
+    mode, load = shunt.best(scene)
+    if inductance is not None:
+        _part(load, "inductance")
+    own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
+    return mode.peak(msgspec.structs.replace(load, **own))
+
+
+@quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))
+def optimum(
+    scene: Scene,
+    shunt: ShuntOptions,
+    *,
+    figure: Annotated[
+        Literal["resistance", "inductance", "peak", "loss_factor"],
+        Meta(description="ohm, H, or without a unit; loss_factor: Im/Re of the stiffness at short_hz"),
+    ] = "peak",
+) -> float:
+    """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
+    mode, load = shunt.best(scene)
+    if figure == "peak":
+        return mode.peak(load)
+    if figure == "loss_factor":
+        stiffness = complex(mode.stiffness(load, mode.omega))
+        return stiffness.imag / stiffness.real
+    return _part(load, figure)
+
+
+def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tuple[Any, Any, Load, float]:
+    """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
+    from verify.waves.impedance_matching import ending
+
+    actuator = None if scene.drive is None else scene.drive.actuator
+    if not isinstance(actuator, Longitudinal):
+        raise InputError("drive.actuator is missing or a patch: an absorbing actuator acts at a point, give a stack")
+    check_number("position", position, "metres from the right end", below=scene.beam.length)
+    hertz = opt.drive_frequency(scene, frequency_hz)
+    end, omega = ending(scene.beam, hertz, position, scene.beam.supports[1]), 2.0 * pi * hertz
+    port = actuator.port(omega)
+    return port, end, absorbing_load(port, end.matched, omega), omega
+
+
+@quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"))
+def absorber(
+    scene: Scene,
+    *,
+    position: FromRightEnd,
+    frequency_hz: opt.Frequency | None = None,
+    figure: Annotated[Figure, Meta(description="ohm or H")] = "resistance",
+) -> float:
+    """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
+    return _part(_absorber(scene, position, frequency_hz)[2], figure)
+
+
+@quantity("shunt.reflection", unit="1", reads=("beam", "drive"))
+def reflection(
+    scene: Scene,
+    *,
+    position: FromRightEnd,
+    frequency_hz: opt.Frequency | None = None,
+    detuning: Annotated[Relative, Meta(gt=-1, description="relative error of the inductance")] = 0.0,
+) -> float:
+    """Reflection Gamma at the scene's actuator near the right end with the matched load, its inductance detuned."""
+    from verify.waves.impedance_matching import reflection
+
+    port, end, load, omega = _absorber(scene, position, frequency_hz)
+    load = msgspec.structs.replace(load, inductance=_part(load, "inductance") * (1.0 + detuning))
+    return reflection(port.loaded_impedance(load.admittance(omega)), end)
