@@ -123,6 +123,8 @@ def response(
         mass = weight * np.array([one.mass_per_length for one in own.pieces])[piece]
         places = np.array([0.0, beam.length, sensor_at, *(one.position for one in own.attached)])
         read = u.deflection(places)
+        if not read[:, 2].all():
+            raise InputError("force_at or sensor_at is at a support, where the response is zero: move it")
         h, w, turn = read[:, 2], (read * v.deflection(places)).T, (u.slope(places) * v.slope(places)).T
         inertia = square * ((u.deflection(x) * v.deflection(x)) @ mass)
         work = h + inertia

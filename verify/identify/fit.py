@@ -19,18 +19,17 @@ from verify.arrays import Array, Indices
 from verify.errors import InputError, near_name
 
 Values: TypeAlias = dict[str, float]
-Prediction: TypeAlias = tuple[Array, Mapping[str, Array] | None]
-REJECTED = 0.01
-"""Probability below which residuals contradict the model."""
+REJECTED, HARD = 0.01, 0.1
+"""Probability below which residuals contradict the model; relative half width of an interval that needs a profile."""
 SINGULAR, INVOLVED = 1e5, 0.05
 """Condition of the Jacobian with columns of unit length, above which it is singular; least component of a singular
 direction, over its largest, in relative changes, that involves a parameter."""
 DOUBLINGS, LAGS, FEWEST = 12, 8, 24
 """Steps outwards of a profile; lags of the test of white residuals, and its least number of residuals."""
 DIFFERENCE = 1e-3
-"""Relative step of differences of a simulation: far above the tolerance of its steps."""
-LARGE = "the residuals are larger than the noise, the model or the noise is wrong"
+"""Relative step of differences of a simulation, far above the tolerance of its steps."""
 SMALL = "the residuals are smaller than the noise, which is overestimated"
+LARGE = "the residuals are larger than the noise, the model or the noise is wrong"
 COLOURED = "the residuals are not white, the model is incomplete and the intervals are too short"
 
 
@@ -53,32 +52,31 @@ class Model:
     """
 
     known: Mapping[str, Parameter]
-    predict: Callable[[Values], Prediction]
+    predict: Callable[[Values], tuple[Array, Mapping[str, Array] | None]]
     x: Array
     labels: tuple[tuple[str, str], tuple[str, str]]
     channels: int = 1
     logs: bool = False
 
-    def values(self, changed: Mapping[str, float] = {}) -> Values:
-        """Values of all parameters. Raises InputError for an unknown name and a value outside the bounds."""
+    def values(self, changed: Mapping[str, float] = {}, names: Sequence[str] = ()) -> Values:
+        """Values of all parameters. Raises InputError for unknown or repeated names, and values outside the bounds."""
+        for name in (*changed, *names):
+            if name not in self.known or names.count(name) > 1:
+                remedy = "give it once" if name in self.known else near_name(name, tuple(self.known))
+                raise InputError(f"parameters: {name!r} is unknown to this model, or repeated: {remedy}")
         for name, value in changed.items():
-            if (one := self.known.get(name)) is None:
-                raise InputError(f"parameter = {name!r} is not known: {near_name(name, tuple(self.known))}")
+            one = self.known[name]
             if not one.lower <= value <= one.upper:
                 raise InputError(f"{name} = {value!r}: give a value from {one.lower:.4g} to {one.upper:.4g} {one.unit}")
         return {name: one.value for name, one in self.known.items()} | dict(changed)
 
-    def check(self, names: Sequence[str]) -> None:
-        """Raise InputError for names that are no parameters, and for one that occurs twice."""
-        for name in names:
-            if name not in self.known or list(names).count(name) > 1:
-                remedy = near_name(name, tuple(self.known)) if name not in self.known else "give it once"
-                raise InputError(f"parameters: {name!r} is not one of this model, or occurs twice: {remedy}")
-
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """A fitted parameter with its standard deviation and 95 % intervals (lower, upper), not beyond its bounds."""
+    """A fitted parameter; `interval` by Fisher information, not beyond its bounds, `profile` with None for no end.
+
+    `reason`: why it is not identifiable; empty where it is.
+    """
 
     name: str
     unit: str
@@ -86,14 +84,17 @@ class Estimate:
     sd: float
     interval: tuple[float, float]
     profile: tuple[float | None, float | None] | None
-    """By profile likelihood, None on a side without rise, None where it is not computed."""
     reason: str
-    """Why the parameter is not identifiable; empty where it is."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A model fitted to data: `curve` and `residuals` (data - curve), (n,); `noise`, the sd that the intervals use."""
+    """A model fitted to data: `curve` and `residuals` (data - curve), (n,); `noise`, the sd that the intervals use.
+
+    `chi2` is the sum of squares over noise^2, `fitness` the probability of more if the model holds, None where the
+    noise is estimated; `whiteness` that of more correlated residuals, None for too few. `rejected`: of SMALL, LARGE and
+    COLOURED those that hold.
+    """
 
     estimates: Mapping[str, Estimate]
     curve: Array
@@ -101,19 +102,9 @@ class Fit:
     noise: float
     freedom: int
     chi2: float | None
-    """Sum of squares over sigma^2, and probability of more if the model holds; None where sigma is estimated."""
     fitness: float | None
     whiteness: float | None
-    """Probability of more correlated residuals if they are white; None for too few."""
-    condition: float
-    """Condition of the Jacobian with columns of unit length."""
     rejected: tuple[str, ...]
-    """Which of LARGE, SMALL and COLOURED holds."""
-
-    @property
-    def contradictions(self) -> list[str]:
-        """Those of them that contradict the model."""
-        return [words for words in self.rejected if words != SMALL]
 
 
 class Problem:
@@ -123,12 +114,8 @@ class Problem:
         known = [model.known[name] for name in names]
         self.model, self.data, self.names, self.fixed = model, data, names, fixed
         self.logs = np.array([one.lower > 0.0 for one in known])
-        self.start, self.lower, self.upper = (
-            np.where(self.logs, np.log(np.where(self.logs, values, 1.0)), values)
-            for values in np.array(
-                [(fixed[name], one.lower, one.upper) for name, one in zip(names, known, strict=True)]
-            ).T
-        )
+        rows = [fixed[name] for name in names], [one.lower for one in known], [one.upper for one in known]
+        self.start, self.lower, self.upper = np.where(self.logs, np.log(np.where(self.logs, rows, 1.0)), rows)
         self.last: tuple[bytes, tuple[Array, Any, Array]] | None = None
 
     def values(self, theta: Array) -> Array:
@@ -140,27 +127,25 @@ class Problem:
         if self.last is None or self.last[0] != theta.tobytes():
             values, half = self.values(theta), len(self.data) // 2
             curve, by = self.model.predict(self.fixed | dict(zip(self.names, values.tolist(), strict=True)))
-            rest = curve - self.data
+            rest, scale = curve - self.data, np.where(self.logs, values, 1.0)
             if self.model.channels == 2:
                 rest[half:] = (rest[half:] + np.pi) % (2.0 * np.pi) - np.pi
-            scale = np.where(self.logs, values, 1.0)
-            jacobian = None if by is None else np.array([by[name] for name in self.names]).T * scale
-            self.last = theta.tobytes(), (rest, jacobian, curve)
+            self.last = theta.tobytes(), (rest, by and np.array([by[name] for name in self.names]).T * scale, curve)
         return self.last[1]
 
     def solve(self, theta: Array, free: Indices) -> Any:
         """Least squares over the coordinates `free`, others as in theta."""
         from scipy.optimize import least_squares
 
-        def full(part: Array) -> Array:
+        def at(part: Array) -> tuple[Array, Any, Array]:
             whole = theta.copy()
             whole[free] = part
-            return whole
+            return self.at(whole)
 
-        exact: Any = (lambda part: self.at(full(part))[1][:, free]) if self.at(theta)[1] is not None else "3-point"
+        exact: Any = "3-point" if at(theta[free])[1] is None else lambda part: at(part)[1][:, free]
         return least_squares(
-            lambda part: self.at(full(part))[0], theta[free], exact, (self.lower[free], self.upper[free]),
-            x_scale="jac", xtol=1e-9, ftol=1e-11, gtol=1e-14, diff_step=DIFFERENCE, max_nfev=200,
+            lambda part: at(part)[0], theta[free], exact, (self.lower[free], self.upper[free]), x_scale="jac",
+            xtol=1e-9, ftol=1e-11, gtol=1e-14, diff_step=DIFFERENCE, max_nfev=200,
         )  # fmt: skip
 
     def profile_end(self, theta: Array, i: int, step: float, rise: float) -> float | None:
@@ -171,7 +156,7 @@ class Problem:
         from scipy.optimize import brentq
 
         others, edge = np.delete(np.arange(len(theta)), i), float((self.upper if step > 0.0 else self.lower)[i])
-        least, near, far = float((self.at(theta)[0] ** 2).sum()), float(theta[i]), float(theta[i])
+        least, far = float((self.at(theta)[0] ** 2).sum()), float(theta[i])
 
         def excess(to: float) -> float:
             point = theta.copy()
@@ -180,15 +165,12 @@ class Problem:
                 point[others] = self.solve(point, others).x
             return float(np.sqrt(max((self.at(point)[0] ** 2).sum() - least, 0.0))) - rise
 
-        for _ in range(DOUBLINGS):
-            near, far = far, float(theta[i] + step)
+        for k in range(DOUBLINGS):
+            near, far = far, float(theta[i]) + 2.0**k * step
             far = min(far, edge) if step > 0.0 else max(far, edge)
-            if far == near:
-                break
-            if excess(far) > 0.0:
-                root = brentq(excess, near, far, xtol=1e-4 * abs(far - near))
+            if far != near and excess(far) > 0.0:
+                root = brentq(excess, near, far, xtol=1e-3 * abs(far - near))
                 return float(np.exp(root) if self.logs[i] else root)
-            step *= 2.0
         return None
 
 
@@ -199,17 +181,16 @@ def fit(
     *,
     start: Mapping[str, float] = {},
     noise: float | None = None,
-    profiles: bool = True,
+    profiles: bool | None = None,
 ) -> Fit:
     """Fit the parameters `names` to data (n,); others keep the value of `start` or of the model.
 
-    `noise`: standard deviation in the unit of y; None: by the residuals. Raises InputError for unknown names, values
-    outside the bounds, too few data, and a fit that does not converge.
+    `noise`: standard deviation in the unit of y; None: by the residuals. `profiles`: None where an interval is wide.
+    Raises InputError for unknown names, values outside the bounds, too few data, and a fit that does not converge.
     """
-    from scipy.stats import chi2, norm, t
+    from scipy.special import chdtrc, ndtri, stdtrit
 
-    fixed, n, p = model.values(start), len(data), len(names)
-    model.check(names)
+    fixed, n, p = model.values(start, names), len(data), len(names)
     if n < p + (noise is None):
         raise InputError(f"data: {n} values for {p} parameters, give more, or the noise")
     problem = Problem(model, data, names, fixed)
@@ -218,22 +199,24 @@ def fit(
         raise InputError(f"start = {dict(start)!r}: the fit does not converge, start nearer to the solution")
     theta, logs, least, freedom = solved.x, problem.logs, 2.0 * float(solved.cost), n - p
     sigma = noise if noise is not None else float(np.sqrt(least / freedom))
-    quantile = float(norm.ppf(0.975) if noise is not None else t.ppf(0.975, freedom))
-    size = np.linalg.norm(solved.jac, axis=0)
-    _, scales, directions = np.linalg.svd(solved.jac / np.where(size > 0.0, size, 1.0), full_matrices=False)
+    quantile = float(ndtri(0.975) if noise is not None else stdtrit(freedom, 0.975))
+    norms = np.linalg.norm(solved.jac, axis=0)
+    size, scale = np.where(norms > 0.0, norms, 1.0), np.where(logs, 1.0, abs(theta))
+    _, scales, directions = np.linalg.svd(solved.jac / size, full_matrices=False)
     loose = scales * SINGULAR < scales[0]  # the data do not determine these combinations of parameters
-    changes = abs(directions[loose]) / (size * np.where(logs, 1.0, abs(theta)) + 1e-300)
-    involved = (changes > INVOLVED * changes.max(axis=1, keepdims=True)).any(axis=0) | (size == 0.0)
+    changes = abs(directions[loose]) / (size * scale + 1e-300)
+    involved = (changes > INVOLVED * changes.max(axis=1, keepdims=True)).any(axis=0) | (norms == 0.0)
     inverse = ((directions[~loose] / scales[~loose, None]) ** 2).sum(axis=0)
-    sds = np.where(involved, np.inf, sigma * np.sqrt(inverse) / np.where(size > 0.0, size, 1.0))
+    sds = np.where(involved, np.inf, sigma * np.sqrt(inverse) / size)
     reach = np.minimum(quantile * sds, 1e3 * np.maximum(1.0, abs(theta)))
+    profiles = bool((reach > HARD * scale).any()) if profiles is None else profiles
     values, estimates = problem.values(theta), dict[str, Estimate]()
     ends = [problem.values(np.clip(theta + side * reach, problem.lower, problem.upper)) for side in (-1.0, 1.0)]
     for i, name in enumerate(names):
         one, interval = model.known[name], (float(ends[0][i]), float(ends[1][i]))
         others = ", ".join(other for other, k in zip(names, involved, strict=True) if k and other != name)
         sd, profile, reason = float(sds[i] * values[i] if logs[i] else sds[i]), None, ""
-        if size[i] == 0.0:
+        if norms[i] == 0.0:
             reason = "the data do not depend on it"
         elif involved[i] and others:
             reason = f"the data determine only its combination with {others}, fix one of them"
@@ -245,26 +228,17 @@ def fit(
             reason = "its interval includes a bound or zero"
         estimates[name] = Estimate(name, one.unit, float(values[i]), sd, interval, profile, reason)
     rest, _, curve = problem.at(theta)
-    fitness = float(chi2.sf(least / noise**2, freedom)) if noise and freedom else None
+    ratio = least / noise**2 if noise else None
+    fitness = None if ratio is None or not freedom else float(chdtrc(freedom, ratio))
     white = whiteness(rest.reshape(model.channels, -1))
     tests = {LARGE: fitness, SMALL: None if fitness is None else 1.0 - fitness, COLOURED: white}
-    return Fit(
-        estimates=estimates,
-        curve=curve,
-        residuals=-rest,
-        noise=sigma,
-        freedom=freedom,
-        chi2=least / noise**2 if noise else None,
-        fitness=fitness,
-        whiteness=white,
-        condition=float(scales[0] / scales[-1]) if scales[-1] > 0.0 else float("inf"),
-        rejected=tuple(words for words, chance in tests.items() if chance is not None and chance < REJECTED),
-    )
+    rejected = tuple(words for words, chance in tests.items() if chance is not None and chance < REJECTED)
+    return Fit(estimates, curve, -rest, sigma, freedom, ratio, fitness, white, rejected)
 
 
 def whiteness(rest: Array) -> float | None:
     """Probability of more correlated residuals (channels, m) if they are white (Ljung and Box, Biometrika 65, 1978)."""
-    from scipy.stats import chi2
+    from scipy.special import chdtrc
 
     channels, m = rest.shape
     if m < FEWEST or not rest.any(axis=1).all():
@@ -272,7 +246,7 @@ def whiteness(rest: Array) -> float | None:
     rest = rest - rest.mean(axis=1, keepdims=True)
     r = [(rest[:, k:] * rest[:, :-k]).sum(axis=1) / (rest**2).sum(axis=1) for k in range(1, LAGS + 1)]
     q = m * (m + 2.0) * sum((one**2).sum() / (m - k) for k, one in enumerate(r, start=1))
-    return float(chi2.sf(q, LAGS * channels))
+    return float(chdtrc(LAGS * channels, q))
 
 
 def coverage(

@@ -8,6 +8,7 @@ On a surface at rest, with g the normal force N over the mass, for v > 0:
 """
 
 from collections.abc import Callable
+from math import copysign
 from typing import Any
 
 import numpy as np
@@ -19,18 +20,21 @@ from verify.identify.fit import Model, Parameter, Values
 from verify.problem.slider import Slider
 
 LABELS = ("time", "s"), ("speed", "m/s")
-BOUNDS = {"mu": (1e-6, 10.0), "mu_static": (1e-6, 10.0), "slope": (1e-3, 1e7), "speed": (-np.inf, np.inf)}
-UNITS = {"slope": "s/m", "speed": "m/s"}
 
 
 def known(slider: Slider, *names: str) -> dict[str, Parameter]:
-    """Parameters of a slider; `slope` is K, s/m, `speed` the initial one. Raises InputError outside the bounds."""
+    """Parameters of a slider; `slope` is K, s/m, `speed` the initial one. Raises InputError for a friction of zero."""
     static = slider.mu if slider.mu_static is None else slider.mu_static
-    values = {"mu": slider.mu, "mu_static": static, "slope": slider.steepness or 0.0, "speed": slider.speed}
-    for name in names:
-        if not BOUNDS[name][0] <= values[name] <= BOUNDS[name][1]:
-            raise InputError(f"slider.{name} = {values[name]!r} cannot start a fit: give another")
-    return {name: Parameter(values[name], UNITS.get(name, ""), *BOUNDS[name]) for name in names}
+    parameters = {
+        "mu": Parameter(slider.mu, "", 1e-6, 10.0),
+        "mu_static": Parameter(static, "", 1e-6, 10.0),
+        "slope": Parameter(slider.steepness or 0.0, "s/m", 1e-3, 1e7),
+        "speed": Parameter(slider.speed, "m/s"),
+    }
+    for name, one in parameters.items():
+        if name in names and not one.lower <= one.value <= one.upper:
+            raise InputError(f"slider.{name} = {one.value!r} cannot start a fit: give another")
+    return {name: parameters[name] for name in names}
 
 
 def decay(slider: Slider, times: Array) -> Model:
@@ -40,7 +44,7 @@ def decay(slider: Slider, times: Array) -> Model:
         raise InputError("slider.speed = 0.0: a free decay needs an initial speed, give it in m/s")
 
     def tanh(values: Values) -> tuple[Array, dict[str, Array]]:
-        mu, slope, sign, start = values["mu"], values["slope"], np.sign(values["speed"]), abs(values["speed"])
+        mu, slope, sign, start = values["mu"], values["slope"], copysign(1.0, values["speed"]), abs(values["speed"])
         steep = slope * max(start, 1e-12)
         log = steep + np.log(-0.5 * np.expm1(-2.0 * steep)) - mu * g * slope * times  # ln sinh(K v): K v0 may be 1e3
         small = np.exp(-abs(log))
@@ -50,7 +54,7 @@ def decay(slider: Slider, times: Array) -> Model:
         return sign * v, {"mu": -sign * g * times * slip, "slope": sign * by_slope, "speed": slip * ratio}
 
     def coulomb(values: Values) -> tuple[Array, dict[str, Array]]:
-        sign, v = np.sign(values["speed"]), abs(values["speed"]) - values["mu"] * g * times
+        sign, v = copysign(1.0, values["speed"]), abs(values["speed"]) - values["mu"] * g * times
         return sign * v.clip(0.0), {"mu": -sign * g * times * (v > 0.0), "speed": np.where(v > 0.0, 1.0, 0.0)}
 
     if slider.law == "coulomb":
@@ -65,7 +69,7 @@ def breakaway(slider: Slider, times: Array, force_rate: float) -> Model:
     def predict(values: Values) -> tuple[Array, dict[str, Array]]:
         start = values["mu_static"] * g / rate
         slides, acceleration = (times - start).clip(0.0), rate * start - values["mu"] * g
-        by_static = -acceleration * (slides > 0.0) * g / rate
+        by_static = np.where(slides > 0.0, -acceleration * g / rate, 0.0)
         return slides * (0.5 * rate * slides + acceleration), {"mu": -g * slides, "mu_static": by_static}
 
     return Model(known(slider, "mu", "mu_static"), predict, times, LABELS)

@@ -41,7 +41,7 @@ def interval(
     if one.reason and side not in ("value", "sd"):
         raise InputError(f"parameter = {parameter!r} is not identifiable: {one.reason}")
     if profile and one.profile is None:
-        raise InputError("profile = True: [identify] has profiles = false, leave one of them out")
+        raise InputError("profile = True: [identify] computes none, give it profiles = true")
     lower, upper = one.profile if profile else one.interval
     figures = {"half-width": 0.5 * (upper - lower), "lower": lower, "upper": upper, "value": one.value, "sd": one.sd}
     return float(figures[side])

@@ -29,14 +29,15 @@ NOTES = (
     "Noise: standard deviation, relative for frequencies and responses. Fit, white: probabilities of residuals that "
     "are larger, and more correlated, if the model holds.",
 )
-Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and responses; estimated unless set.")]
+RESIDUALS = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 if the model holds."
+Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and |H|.")]
 
 
 class Synthetic(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Data of the model with normal noise."""
 
     noise: Noise
-    """Standard deviation of the noise, in the unit of the data; relative for frequencies and a response."""
+    """Standard deviation of the noise, in the unit of the data; relative for frequencies and |H|."""
     span: tuple[float, float]
     """First and last time, s, mode number, or frequency, Hz."""
     points: Annotated[int, Meta(ge=2, le=100_000)] = 200
@@ -57,37 +58,33 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     what: Annotated[
         Literal["friction-decay", "breakaway", "run", "frequencies", "response"],
         Meta(description="Speed of the slider in free decay, under a growing force, or on the driven beam; natural "
-             "frequencies; receptance."),
+             "frequencies; receptance H."),
     ]  # fmt: skip
     parameters: Annotated[tuple[str, ...], Meta(min_length=1, description="Parameters to fit.")]
-    start: Annotated[dict[str, float], Meta(description="Start, or fixed value, by parameter; else the scene's.")] = {}  # noqa: RUF012
-    noise: Noise | None = None
+    start: Annotated[dict[str, float], Meta(description="Start, or fixed value; by default the scene's.")] = {}  # noqa: RUF012
+    noise: Annotated[Noise | None, Meta(description="Standard deviation of the data; estimated unless set.")] = None
     x: Annotated[tuple[float, ...], Meta(description="Times, s, mode numbers, or frequencies, Hz.")] = ()
     y: Annotated[tuple[float, ...], Meta(description="Speeds, m/s, frequencies, Hz, or |H|, m/N.")] = ()
-    phase_deg: Annotated[tuple[float, ...], Meta(description="Phases of a response, degrees.")] = ()
-    file: Annotated[str | None, Meta(description="Columns x and y, for a response also phase or re, im; or .uff.")] = (
-        None
-    )
+    phase_deg: Annotated[tuple[float, ...], Meta(description="Phases of H, degrees.")] = ()
+    file: Annotated[str | None, Meta(description="Columns x, y, for H also phase or re, im; or .uff.")] = None
     synthetic: Annotated[Synthetic | None, Meta(description="Data of the model with noise.")] = None
     force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway.")] = 1.0
-    force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of a response.")] = 0.0
-    sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of its sensor.")] = 0.0
+    force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H.")] = 0.0
+    sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H.")] = 0.0
     theory: Annotated[Theory, Meta(description="Beam theory of frequencies.")] = "euler-bernoulli"
     model: Annotated[str, Meta(description="Model of the beam under a run.")] = "fem"
     count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
-    profiles: Annotated[bool, Meta(description="Whether profiles are computed.")] = True
+    profiles: Annotated[bool | None, Meta(description="Profiles; computed for wide intervals unless set.")] = None
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError for unknown parameters, missing or doubled data, and a scene without what they need."""
         import numpy as np
 
-        if sum((bool(self.x or self.y), self.file is not None, self.synthetic is not None)) != 1:
+        if (bool(self.x or self.y), self.file is not None, self.synthetic is not None).count(True) != 1:
             raise InputError("identify: give x and y, or a file, or synthetic")
         if len(self.x) != len(self.y) or len(self.phase_deg) not in (0, len(self.y)):
             raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many, phase_deg too")
-        if self.what in ("frequencies", "response") and min(self.y, default=1.0) <= 0.0:
-            raise InputError(f"identify.y has {min(self.y)!r}: give positive frequencies and responses")
-        self.model_of(scene, np.array([1.0])).check(self.parameters)
+        self.model_of(scene, np.array([1.0])).values({}, self.parameters)
 
     def model_of(self, scene: "Scene", x: "Array", phase: bool = True) -> "Model":
         """The model at x (n,). Raises InputError."""
@@ -134,6 +131,8 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             else:
                 x, y, phase = read_series(Path(self.file))
         model = self.model_of(scene, x, phase is not None)
+        if model.logs and (y <= 0.0).any():
+            raise InputError("identify.y: a frequency or |H| is not positive, leave it out")
         y = np.log(y) if model.logs else y
         return model, y if phase is None else np.concatenate([y, phase])
 
@@ -154,10 +153,12 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Fit the parameters. Raises InputError."""
         import numpy as np
 
+        from verify.identify.fit import SMALL
+
         progress(f"fit of {', '.join(self.parameters)}")
         model, data, found = self.fitted(scene, cache)
-        margins = [void("the fit", words, leads=True) for words in found.contradictions]
-        known, rows = list[str](), list[list[Any]]()
+        margins = [void("the fit", words, leads=True) for words in found.rejected if words != SMALL]
+        known, rows, rejected = list[str](), list[list[Any]](), bool(margins)
         for one in found.estimates.values():
             half = 0.5 * (one.interval[1] - one.interval[0])
             if one.reason:
@@ -174,24 +175,24 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         columns += [*(Column(name, format=".6g") for name in names), Column("verdict")]
         tests = [Column(name, format=".3g") for name in ("noise", "degrees of freedom", "chi^2", "fit", "white")]
         row = [found.noise, found.freedom, found.chi2, found.fitness, found.whiteness]
-        x, n = model.x, len(model.x)
+        x, n, points = model.x, len(model.x), {"linestyle": "None", "marker": "."}
         shown = [np.exp(values[:n]) if model.logs else values[:n] for values in (data, found.curve)]
-        lines = [("data", x, shown[0], {"linestyle": "None", "marker": "."}), ("fit", x, shown[1], {})]
         rest = found.residuals.reshape(model.channels, -1) / found.noise
-        parts = [("", x, one, {"linestyle": "None", "marker": "."}) for one in rest]
+        lines = [
+            (name, x, one, points) for name, one in zip(("|H|", "phase") if len(rest) > 1 else ("",), rest, strict=True)
+        ]
 
         def draw(ax: "Axes") -> None:
-            plot_lines(ax, lines, *model.labels)
+            plot_lines(ax, [("data", x, shown[0], points), ("fit", x, shown[1], {})], *model.labels)
             ax.set_yscale("log" if self.what == "response" else "linear")
 
-        residuals = partial(plot_lines, lines=parts, x=model.labels[0], y=("residual over its sd", ""))
-        caption = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 of a model that holds."
+        residuals = partial(plot_lines, lines=lines, x=model.labels[0], y=("residual over its sd", ""))
         return Result(
-            summary=f"{', '.join(known)} (95 %)." if known and not found.contradictions else "",
+            summary=f"{', '.join(known)} (95 %)." if known and not rejected else "",
             tables=[Table("Parameters", columns, rows, NOTES), Table("Residuals", tests, [row])],
             figures=[
                 Figure("identify-fit", "Data and fit", "Least squares.", draw),
-                Figure("identify-residuals", "Residuals", caption, residuals),
+                Figure("identify-residuals", "Residuals", RESIDUALS, residuals),
             ],
             warnings=[f"{words[0].upper()}{words[1:]}." for words in found.rejected],
             data={"residuals": found.residuals},
