@@ -85,7 +85,9 @@ def frequencies(beam: Beam, names: Sequence[str], modes: Array, theory: Theory =
         hertz = solved.frequencies_hz[index]
         square, stiff, heavy = (2.0 * pi * hertz) ** 2, np.zeros(len(index)), np.zeros(len(index))
         places = np.array([0.0, beam.length, *(one.position for one in own.attached)])
-        w, turn = (read(places)[index].T ** 2 for read in (solved.deflection, solved.slope))
+        w, turn = np.zeros((2, len(places), len(index)))
+        if own.attached:
+            w, turn = (read(places)[index].T ** 2 for read in (solved.deflection, solved.slope))
         for one, across, around in zip(own.attached, w[2:], turn[2:], strict=True):
             if isinstance(one, PointMass):
                 heavy += one.mass * across + one.rotary_inertia * around
