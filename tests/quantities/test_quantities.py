@@ -18,6 +18,7 @@ from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
 from verify.quantities.base import as_plain, as_text
+from verify.studies.identify import Identify, Synthetic
 from verify.travelling_wave import measure
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -32,6 +33,7 @@ TOUCHING = Contact(stiffness=6.1e4, damping=13.0)
 POINT = replace(RIDER, mass=0.003, law="coulomb", slope=None, speed=-1.3e-4, preload=0.31, contact=TOUCHING)
 ENDED = Device(position=0.647, stiffness=910.0, mass=0.0071, dashpot=1.3)
 FORCES = (PointForce(position=0.0411, amplitude=1.3, phase_deg=17.0), PointForce(position=0.6727, phase_deg=101.0))
+DECAY = Identify(what="friction-decay", parameters=("mu", "slope"), synthetic=Synthetic(noise=2e-5, span=(0.0, 4e-5)))
 AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "steps_per_period": 40}
 
 
@@ -52,6 +54,7 @@ SCENES = {
     "undamped": scene_of(STRIP, LIGHT, 7e-4),
     "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
     "device": scene_of(DAMPED, devices=(ENDED,)),
+    "decay": SimpleNamespace(**vars(BARE) | {"slider": RIDER, "studies": {"identify": DECAY}}),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
@@ -108,6 +111,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}), "slider.layer_efficiency": ("bare", LAYER),
     "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}),
+    "identify.interval": ("decay", {"parameter": "slope"}),
+    "identify.coverage": ("decay", {"parameter": "mu", "repeats": 100}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
     "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
