@@ -250,7 +250,7 @@ def test_a_file_is_beside_its_scene(tmp_path):
     columns = {
         "f,re,im": np.array([hertz, h.real, h.imag]),
         "f;|H|;phase deg": np.array([hertz, abs(h), np.rad2deg(np.angle(h))]),
-        "f,|H|": np.array([hertz, abs(h)]),
+        "f,|A|": np.array([hertz, abs(h) * (2.0 * np.pi * hertz) ** 2]),
     }
     scene = tmp_path / "rod.toml"
     scene.write_text(
@@ -258,10 +258,11 @@ def test_a_file_is_beside_its_scene(tmp_path):
         'supports = ["clamped", "free"]\n[identify]\nwhat = "response"\nfile = "h.csv"\nforce_at = 0.07\n'
         'sensor_at = 0.19\nparameters = ["density", "loss_factor"]\nnoise = 1e-3\nstart = { loss_factor = 0.01 }\n'
     )
-    for head, table in columns.items():
+    for head, table in columns.items():  # the last, of an accelerometer
         between = ";" if ";" in head else ","
         np.savetxt(tmp_path / "h.csv", table.T, delimiter=between, header=head, comments="", fmt="%.15e")
-        values = [row["value"] for row in run(load_scene(scene)).tables[0].records()]
+        sensor = ["identify.sensor=acceleration"] if "A" in head else []
+        values = [row["value"] for row in run(load_scene(scene, sensor)).tables[0].records()]
         assert values == pytest.approx([7700.0, 0.02], rel=1e-6), head
     pyuff = pytest.importorskip("pyuff")
     from tests.reference.universal_files import RESPONSE

@@ -41,10 +41,8 @@ def known(beam: Beam, names: Sequence[str]) -> dict[str, Parameter]:
     """
     beam.check_features("identification", ("section", "mass", "spring"))
     own, parameters = set_fields(beam), dict[str, Parameter]()
-    for name, other, unit in (
-        ("youngs_modulus", "bending_stiffness", "Pa"),
-        ("density", "mass_per_length", "kg/m^3"),
-    ):
+    rows = ("youngs_modulus", "bending_stiffness", "Pa"), ("density", "mass_per_length", "kg/m^3")
+    for name, other, unit in rows:
         if name not in own or any({name, other} & set(set_fields(one)) for one in beam.section):
             raise InputError(f"beam.{name}: identification varies that of the whole beam, give it there alone")
         parameters[name] = Parameter(own[name], unit, own[name] / RANGE, own[name] * RANGE)
@@ -75,6 +73,8 @@ def frequencies(beam: Beam, names: Sequence[str], modes: Array, theory: Theory =
     """Logarithms of the frequencies of modes (n,), from 1; noise is relative. Raises InputError."""
     parameters, index = known(beam, names), np.asarray(modes, dtype=int) - 1
     del parameters["loss_factor"]
+    if (index != np.asarray(modes) - 1).any() or index.min() < 0:
+        raise InputError(f"modes = {modes.tolist()}: give mode numbers from 1")
     turning = any(one.rotational for one in beam.spring) or any(one.rotary_inertia for one in beam.mass)
     if theory == "timoshenko" and (turning or set(WALLS) & set(parameters)):
         raise InputError("theory = 'timoshenko': rotational springs and bodies need another, give 'rayleigh'")

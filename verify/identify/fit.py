@@ -26,8 +26,6 @@ SINGULAR, INVOLVED = 1e5, 0.05
 direction, over its largest, in relative changes, that involves a parameter."""
 DOUBLINGS, LAGS, FEWEST = 12, 8, 24
 """Steps outwards of a profile; lags of the test of white residuals, and its least number of residuals."""
-DIFFERENCE = 1e-3
-"""Relative step of differences of a simulation, far above the tolerance of its steps."""
 SMALL = "the residuals are smaller than the noise, which is overestimated"
 LARGE = "the residuals are larger than the noise, the model or the noise is wrong"
 COLOURED = "the residuals are not white, the model is incomplete and the intervals are too short"
@@ -145,7 +143,8 @@ class Problem:
         exact: Any = "3-point" if at(theta[free])[1] is None else lambda part: at(part)[1][:, free]
         return least_squares(
             lambda part: at(part)[0], theta[free], exact, (self.lower[free], self.upper[free]), x_scale="jac",
-            xtol=1e-9, ftol=1e-11, gtol=1e-14, diff_step=DIFFERENCE, max_nfev=200,
+            xtol=1e-9, ftol=1e-11, gtol=1e-14, max_nfev=200,
+            diff_step=1e-3,  # of a simulation, far above the tolerance of its time steps
         )  # fmt: skip
 
     def profile_end(self, theta: Array, i: int, step: float, rise: float) -> float | None:
@@ -230,7 +229,7 @@ def fit(
     rest, _, curve = problem.at(theta)
     ratio = least / noise**2 if noise else None
     fitness = None if ratio is None or not freedom else float(chdtrc(freedom, ratio))
-    white = whiteness(rest.reshape(model.channels, -1))
+    white = whiteness(rest.reshape(model.channels, -1)) if sigma > 1e-9 * abs(curve).max() else None  # else rounding
     tests = {LARGE: fitness, SMALL: None if fitness is None else 1.0 - fitness, COLOURED: white}
     rejected = tuple(words for words, chance in tests.items() if chance is not None and chance < REJECTED)
     return Fit(estimates, curve, -rest, sigma, freedom, ratio, fitness, white, rejected)

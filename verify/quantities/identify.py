@@ -12,10 +12,7 @@ if TYPE_CHECKING:
 
 READS = (*TABLES, "identify")
 Name = Annotated[str, Meta(description="fitted parameter of [identify]")]
-Side = Annotated[
-    Literal["half-width", "lower", "upper", "value", "sd"],
-    Meta(description="half the width or an end of the 95 % interval, the estimate or its standard deviation"),
-]
+Side = Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd"]
 
 
 def _study(scene: Scene, parameter: str) -> Any:
@@ -28,23 +25,17 @@ def _study(scene: Scene, parameter: str) -> Any:
 
 
 @quantity("identify.interval", unit="SI", reads=READS)
-def interval(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    parameter: Name,
-    side: Side = "half-width",
-    profile: Annotated[bool, Meta(description="by profile likelihood instead of Fisher information")] = False,
-) -> float:
-    """Interval of a parameter identified from data, in its SI unit."""
+def interval(scene: Scene, cache: "SolutionCache", *, parameter: Name, side: Side = "half-width") -> float:
+    """95 % interval, estimate or standard deviation of a parameter identified from data, in its SI unit."""
     one = _study(scene, parameter).fitted(scene, cache)[2].estimates[parameter]
-    if one.reason and side not in ("value", "sd"):
+    if one.reason and side not in ("value", "sd", "profile-lower", "profile-upper"):
         raise InputError(f"parameter = {parameter!r} is not identifiable: {one.reason}")
-    if profile and one.profile is None:
-        raise InputError("profile = True: [identify] computes none, give it profiles = true")
-    lower, upper = one.profile if profile else one.interval
+    (lower, upper), ends = one.interval, one.profile or (None, None)
     figures = {"half-width": 0.5 * (upper - lower), "lower": lower, "upper": upper, "value": one.value, "sd": one.sd}
-    return float(figures[side])
+    figure = (figures | {"profile-lower": ends[0], "profile-upper": ends[1]})[side]
+    if figure is None:
+        raise InputError(f"side = {side!r}: {one.reason or 'no profile is computed, give [identify] profiles = true'}")
+    return float(figure)
 
 
 @quantity("identify.coverage", unit="1", reads=READS)

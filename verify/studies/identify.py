@@ -30,6 +30,7 @@ NOTES = (
     "are larger, and more correlated, if the model holds.",
 )
 RESIDUALS = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 if the model holds."
+ORDERS = ("displacement", "velocity", "acceleration")
 Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and |H|.")]
 
 
@@ -71,6 +72,9 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway.")] = 1.0
     force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H.")] = 0.0
     sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H.")] = 0.0
+    sensor: Annotated[
+        Literal["displacement", "velocity", "acceleration"], Meta(description="What the data of H divide by the force.")
+    ] = "displacement"
     theory: Annotated[Theory, Meta(description="Beam theory of frequencies.")] = "euler-bernoulli"
     model: Annotated[str, Meta(description="Model of the beam under a run.")] = "fem"
     count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
@@ -130,11 +134,13 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 x, y = np.array(found.numbers or range(1, len(found.values) + 1)), found.hertz
             else:
                 x, y, phase = read_series(Path(self.file))
-        model = self.model_of(scene, x, phase is not None)
+        model, order = self.model_of(scene, x, phase is not None), ORDERS.index(self.sensor)
+        if self.what != "response" and (phase is not None or order):
+            raise InputError(f"identify.what = {self.what!r}: its data have no phase or sensor, leave these out")
         if model.logs and (y <= 0.0).any():
             raise InputError("identify.y: a frequency or |H| is not positive, leave it out")
-        y = np.log(y) if model.logs else y
-        return model, y if phase is None else np.concatenate([y, phase])
+        y = np.log(y / (2.0 * np.pi * x) ** order) if model.logs else y
+        return model, y if phase is None else np.concatenate([y, phase - 0.5 * np.pi * order])
 
     def fitted(self, scene: "Scene", cache: "SolutionCache") -> "tuple[Model, Array, Fit]":
         """(model, data, fit), computed once. Raises InputError."""
