@@ -124,12 +124,6 @@ def test_coverage_of_the_intervals(model, names, noise):
         assert 0.935 < share < 0.965
 
 
-def test_coverage_of_a_wall():
-    model = beams.frequencies(BEAM, ("wall_left",), MODES[:4])
-    shares = coverage(model, ("youngs_modulus", "wall_left"), {"wall_left": 300.0}, 1e-3, repeats=200, seed=3)
-    assert all(0.90 < share < 0.99 for share in shares.values())  # 95 % within 3 standard deviations of 200 fits
-
-
 def test_the_profile_of_a_linear_parameter_is_its_interval():
     model = friction.decay(LOOSE, np.linspace(0.0, 0.15, 60))
     one = fit(model, measured(model, 5e-3, 4), ("speed",), profiles=True).estimates["speed"]
