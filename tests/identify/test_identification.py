@@ -131,6 +131,7 @@ def test_frequencies_determine_the_quotient_of_modulus_and_density():
     model = beams.frequencies(BEAM, (), MODES)
     data = measured(model, 1e-3, 2)
     both = fit(model, data, ("youngs_modulus", "density"), start={"youngs_modulus": 1.5e11}, noise=1e-3).estimates
+    assert fit(model, data, ("youngs_modulus", "density")).freedom == 5  # one combination of two is determined
     assert "only its combination with density" in both["youngs_modulus"].reason
     assert "only its combination with youngs_modulus" in both["density"].reason
     assert both["youngs_modulus"].value / both["density"].value == pytest.approx(2e11 / 7800.0, rel=3e-3)
@@ -170,8 +171,7 @@ def test_a_wrong_law_is_rejected():
     smooth = friction.decay(SLIDER, TIMES)
     wrong = friction.decay(replace(SLIDER, law="coulomb", slope=None), TIMES)
     known = fit(wrong, measured(smooth, 1e-3, 1), ("mu",), noise=1e-3)
-    assert {LARGE, COLOURED} <= set(known.rejected)
-    assert COLOURED in fit(wrong, measured(smooth, 1e-3, 1), ("mu",)).rejected
+    assert {LARGE, COLOURED} <= {*known.rejected} & {LARGE, *fit(wrong, measured(smooth, 1e-3, 1), ("mu",)).rejected}
     assert fit(smooth, measured(smooth, 1e-3, 7), ("mu", "slope"), noise=1e-3).rejected == ()
 
 

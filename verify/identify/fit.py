@@ -196,13 +196,14 @@ def fit(
     solved = problem.solve(problem.start, np.arange(p))
     if solved.status < 1:
         raise InputError(f"start = {dict(start)!r}: the fit does not converge, start nearer to the solution")
-    theta, logs, least, freedom = solved.x, problem.logs, 2.0 * float(solved.cost), n - p
-    sigma = noise if noise is not None else float(np.sqrt(least / freedom))
-    quantile = float(ndtri(0.975) if noise is not None else stdtrit(freedom, 0.975))
+    theta, logs, least = solved.x, problem.logs, 2.0 * float(solved.cost)
     norms = np.linalg.norm(solved.jac, axis=0)
     size, scale = np.where(norms > 0.0, norms, 1.0), np.where(logs, 1.0, abs(theta))
     _, scales, directions = np.linalg.svd(solved.jac / size, full_matrices=False)
     loose = scales * SINGULAR < scales[0]  # the data do not determine these combinations of parameters
+    freedom = n - p + int(loose.sum())
+    sigma = noise if noise is not None else float(np.sqrt(least / freedom))
+    quantile = float(ndtri(0.975) if noise is not None else stdtrit(freedom, 0.975))
     changes = abs(directions[loose]) / (size * scale + 1e-300)
     involved = (changes > INVOLVED * changes.max(axis=1, keepdims=True)).any(axis=0) | (norms == 0.0)
     inverse = ((directions[~loose] / scales[~loose, None]) ** 2).sum(axis=0)

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 READS = (*TABLES, "identify")
 Name = Annotated[str, Meta(description="fitted parameter of [identify]")]
-Side = Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd"]
+Side = Annotated[
+    Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd"],
+    Meta(description="half the width or an end of the interval, the estimate, or its standard deviation"),
+]
 
 
 def _study(scene: Scene, parameter: str) -> Any:
