@@ -20,6 +20,7 @@ from verify.quantities import QUANTITIES, evaluate, parse_arguments
 from verify.quantities.base import as_plain, as_text
 from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
 from verify.studies.motion import Motion
+from verify.studies.identify import Identify, Synthetic
 from verify.travelling_wave import measure
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -35,6 +36,7 @@ POINT = replace(RIDER, mass=0.003, law="coulomb", slope=None, speed=-1.3e-4, pre
 TRANSDUCER = Stack(layers=7, layer_thickness=4e-4, area=2.3e-5, dielectric_loss=0.004)
 ENDED = Device(position=0.647, stiffness=910.0, mass=0.0071, dashpot=1.3)
 FORCES = (PointForce(position=0.0411, amplitude=1.3, phase_deg=17.0), PointForce(position=0.6727, phase_deg=101.0))
+DECAY = Identify(what="friction-decay", parameters=("mu", "slope"), synthetic=Synthetic(noise=2e-5, span=(0.0, 4e-5)))
 AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "steps_per_period": 40}
 
 
@@ -60,6 +62,7 @@ SCENES = {
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
     "actuated": scene_of(STRIP, actuator=Stack(layers=20, layer_thickness=5e-4, area=25e-6)),
+    "decay": SimpleNamespace(**vars(BARE) | {"slider": RIDER, "studies": {"identify": DECAY}}),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
@@ -120,6 +123,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}),
     **{f"actuator.{name}": ("stack", {}) for name in ("resonance", "antiresonance", "coupling", "branch")},
     "actuator.impedance": ("stack", {"frequency_hz": 7e4}),
+    "identify.interval": ("decay", {"parameter": "slope"}),
+    "identify.coverage": ("decay", {"parameter": "mu", "repeats": 100}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
     **{f"shunt.{n}": ("bare", {"coupling": 0.17, "circuit": "parallel"}) for n in ("peak", "optimum")},
     **{f"shunt.{n}": ("actuated", {"position": 0.083}) for n in ("absorber", "reflection")},

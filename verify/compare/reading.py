@@ -16,6 +16,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError, shown
 from verify.files import exists
+from verify.io.mode_files import UNIVERSAL, read_response
 from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
 
@@ -186,9 +187,35 @@ def _solver_cells(text: str) -> list[str]:
 def read_shapes(path: Path, length: float) -> ModeShapes:
     """Mode shapes in a text file: x in metres, then one column for each mode. Raises InputError."""
     source = f"modes file {str(path)!r}"
-    rows = _rows(_text(path, source), source)[1]
-    table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
+    table = _table(path, source)[1]
     return checked_shapes(ModeShapes(x=table[:, 0], values=table[:, 1:].T), length, source)
+
+
+def read_series(path: Path) -> tuple[Array, Array, Array | None]:
+    """(x, y, angle of y or None), each (n,), of a text file with columns x, y, or of a universal file's first response.
+
+    Third columns: the phase, in degrees unless its header has 'rad', or with headers 're' and 'im' the imaginary part.
+    Raises InputError.
+    """
+    source = f"file {str(path)!r}"
+    if path.suffix.lower() in UNIVERSAL:
+        x, response = read_response(path, source)
+        return x, np.abs(response), np.angle(response)
+    head, table = _table(path, source)
+    if table.shape[1] not in (2, 3):
+        raise InputError(f"{source} has {table.shape[1]} columns: give x, y and for a response its phase")
+    if table.shape[1] == 2:
+        return table[:, 0], table[:, 1], None
+    if head and re.match(r"\W*re", head[1], re.I) and re.match(r"\W*im", head[2], re.I):
+        response = table[:, 1] + 1j * table[:, 2]
+        return table[:, 0], np.abs(response), np.angle(response)
+    return table[:, 0], table[:, 1], table[:, 2] if head and "rad" in head[2].lower() else np.deg2rad(table[:, 2])
+
+
+def _table(path: Path, source: str) -> tuple[list[str], Array]:
+    """(header or empty, numbers (n, k)) of a text file. Raises InputError."""
+    head, rows = _rows(_text(path, source), source)
+    return head, np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
 
 
 def checked_shapes(shapes: ModeShapes, length: float, source: str) -> ModeShapes:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, one_line
 
 UNIVERSAL = (".uff", ".unv")
@@ -26,16 +26,7 @@ def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[s
 
     At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
     """
-    try:
-        import pyuff
-    except ImportError:
-        raise InputError(f"{source} needs pyuff: pip install fem-segment-verify[measured]") from None
-    try:
-        sets = [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
-    except Exception as error:  # its reader raises plain ones
-        raise InputError(
-            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
-        ) from None
+    sets = _sets(path, source)
     of = {kind: [one for one in sets if one["type"] == kind] for kind in (15, 2411, 55, 58)}
     node = {
         int(n): xyz for one in of[15] + of[2411] for n, *xyz in zip(*map(one.get, ("node_nums", *"xyz")), strict=True)
@@ -64,6 +55,28 @@ def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[s
         raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
     arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
     return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
+
+
+def read_response(path: Path, source: str) -> tuple[Array, ComplexArray]:
+    """(frequencies, response), (n,) each, of the first set 58 of a universal file. Raises InputError."""
+    first = next((one for one in _sets(path, source) if one["type"] == 58), None)
+    if first is None:
+        raise InputError(f"{source} has no response: write a set 58")
+    return np.asarray(first["x"], dtype=float), np.asarray(first["data"], dtype=complex)
+
+
+def _sets(path: Path, source: str) -> list[dict[str, Any]]:
+    """The sets of a universal file. Raises InputError."""
+    try:
+        import pyuff
+    except ImportError:
+        raise InputError(f"{source} needs pyuff: pip install fem-segment-verify[measured]") from None
+    try:
+        return [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
+    except Exception as error:  # its reader raises plain ones
+        raise InputError(
+            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
+        ) from None
 
 
 def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:

@@ -93,7 +93,12 @@ def tables_of(name_or_path: str | Path, overrides: Sequence[str] = ()) -> dict[s
     if phrase != str(name_or_path):
         tables: dict[str, Any] = {"name": "beam", "title": phrase, "beam": beam_table(phrase)}
     else:
-        tables = read_toml(scene_path(name_or_path))
+        path = scene_path(name_or_path)
+        tables = read_toml(path)
+        for name, section in tables.items():
+            for field in STUDIES[name].files if isinstance(section, dict) and name in STUDIES else ():
+                if isinstance(section.get(field), str):
+                    section[field] = str(path.parent / section[field])
     keys = [text.partition("=")[0].strip() for text in overrides]
     errors = [f"--set {key} occurs twice: set it once" for key in dict.fromkeys(keys) if keys.count(key) > 1]
     for text in overrides:

@@ -26,6 +26,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     name: ClassVar[str] = ""  # name of its section in a scene and of its key in JSON
     title: ClassVar[str] = ""  # heading on the page
     devices: ClassVar[bool] = False  # whether it accepts a drive with devices on the beam
+    files: ClassVar[tuple[str, ...]] = ()  # fields that are paths, relative to the folder of the scene file
 
     @property
     def steps(self) -> int:
@@ -40,7 +41,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         raise NotImplementedError
 
 
-OWN = ("spectrum", "convergence", "wave", "motion", "motor", "claims", "sweep")
+OWN = ("spectrum", "convergence", "wave", "motion", "motor", "identify", "claims", "sweep")
 STUDIES: Registry[type[Study]] = Registry(
     "study",
     "verify.studies",

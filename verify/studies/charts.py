@@ -62,7 +62,7 @@ def plot_lines(
     for label, xs, ys, style in drawn:
         every = slice(None, None, max(len(xs) // MOST_POINTS, 1))
         ax.plot(x_unit.factor * xs[every], y_unit.factor * ys[every], label=label, **style)
-    ax.set(xlabel=f"{x[0]}, {x_unit.name}", ylabel=f"{y[0]}, {y_unit.name}")
+    ax.set(xlabel=f"{x[0]}, {x_unit.name}".rstrip(", "), ylabel=f"{y[0]}, {y_unit.name}".rstrip(", "))
     if any(label for label, *_ in drawn):
         ax.legend()
 

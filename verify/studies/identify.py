@@ -1,0 +1,206 @@
+"""Parameters of friction or of the beam, identified from data of a scene or from synthetic data, with intervals."""
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import msgspec
+from msgspec import Meta
+
+from verify.analysis.verdict import Margin, void
+from verify.errors import InputError
+from verify.options import Theory
+from verify.report.result import Column, Figure, Result, Table
+from verify.studies.base import Progress, Study
+from verify.studies.charts import plot_lines
+from verify.validation import unit
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from verify.analysis.solution_cache import SolutionCache
+    from verify.arrays import Array
+    from verify.identify.fit import Fit, Model
+    from verify.scene.model import Scene
+
+NOTES = (
+    "Intervals of 95 %: lower and upper by Fisher information and Student's t (normal distribution for a known noise), "
+    "and by profile likelihood, which has no end where the data do not bound the parameter.",
+    "Noise: standard deviation, relative for frequencies and responses. Fit, white: probabilities of residuals that "
+    "are larger, and more correlated, if the model holds.",
+)
+RESIDUALS = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 if the model holds."
+ORDERS = ("displacement", "velocity", "acceleration")
+Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and |H|.")]
+
+
+class Synthetic(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Data of the model with normal noise."""
+
+    noise: Noise
+    """Standard deviation of the noise, in the unit of the data; relative for frequencies and |H|."""
+    span: tuple[float, float]
+    """First and last time, s, mode number, or frequency, Hz."""
+    points: Annotated[int, Meta(ge=2, le=100_000)] = 200
+    """Number of times or frequencies."""
+    true: dict[str, float] = {}
+    """True values by parameter; by default those of the scene."""
+    seed: int = 0
+    """Seed of the random numbers."""
+
+
+class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A fit of parameters to data: `x` and `y`, a file, or synthetic."""
+
+    name: ClassVar[str] = "identify"
+    title: ClassVar[str] = "Identification"
+    files: ClassVar[tuple[str, ...]] = ("file",)
+
+    what: Annotated[
+        Literal["friction-decay", "breakaway", "run", "frequencies", "response"],
+        Meta(description="Speed of the slider in free decay, under a growing force, or on the driven beam; natural "
+             "frequencies; receptance H."),
+    ]  # fmt: skip
+    parameters: Annotated[tuple[str, ...], Meta(min_length=1, description="Parameters to fit.")]
+    start: Annotated[dict[str, float], Meta(description="Start, or fixed value; by default the scene's.")] = {}  # noqa: RUF012
+    noise: Annotated[Noise | None, Meta(description="Standard deviation of the data; estimated unless set.")] = None
+    x: Annotated[tuple[float, ...], Meta(description="Times, s, mode numbers, or frequencies, Hz.")] = ()
+    y: Annotated[tuple[float, ...], Meta(description="Speeds, m/s, frequencies, Hz, or |H|, m/N.")] = ()
+    phase_deg: Annotated[tuple[float, ...], Meta(description="Phases of H, degrees.")] = ()
+    file: Annotated[str | None, Meta(description="Columns x, y, for H also phase or re, im; or .uff.")] = None
+    synthetic: Annotated[Synthetic | None, Meta(description="Data of the model with noise.")] = None
+    force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway.")] = 1.0
+    force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H.")] = 0.0
+    sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H.")] = 0.0
+    sensor: Annotated[
+        Literal["displacement", "velocity", "acceleration"], Meta(description="What the data of H divide by the force.")
+    ] = "displacement"
+    theory: Annotated[Theory, Meta(description="Beam theory of frequencies.")] = "euler-bernoulli"
+    model: Annotated[str, Meta(description="Model of the beam under a run.")] = "fem"
+    count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
+    profiles: Annotated[bool | None, Meta(description="Profiles; computed for wide intervals unless set.")] = None
+
+    def check(self, scene: "Scene") -> None:
+        """Raise InputError for unknown parameters, missing or doubled data, and a scene without what they need."""
+        import numpy as np
+
+        if (bool(self.x or self.y), self.file is not None, self.synthetic is not None).count(True) != 1:
+            raise InputError("identify: give x and y, or a file, or synthetic")
+        if len(self.x) != len(self.y) or len(self.phase_deg) not in (0, len(self.y)):
+            raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many, phase_deg too")
+        self.model_of(scene, np.array([1.0])).values({}, self.parameters)
+
+    def model_of(self, scene: "Scene", x: "Array", phase: bool = True) -> "Model":
+        """The model at x (n,). Raises InputError."""
+        from verify.identify import beam, friction
+
+        names = (*self.parameters, *self.start, *(self.synthetic.true if self.synthetic else ()))
+        if self.what == "frequencies":
+            return beam.frequencies(scene.beam, names, x, self.theory)
+        if self.what == "response":
+            return beam.response(scene.beam, names, x, self.force_at, self.sensor_at, phase=phase)
+        if scene.slider is None:
+            raise InputError("slider is missing: add [slider] with mass and mu to the scene")
+        if self.what == "friction-decay":
+            return friction.decay(scene.slider, x)
+        if self.what == "breakaway":
+            return friction.breakaway(scene.slider, x, self.force_rate)
+
+        def simulated(slider: Any, until: float) -> Any:
+            from verify.dynamics.simulate import simulate
+            from verify.quantities.slider import TimeOptions, motion_arguments
+
+            arguments = motion_arguments(scene, TimeOptions(model=self.model, count=self.count, time=until))
+            return simulate(**arguments, slider=slider, samples=int(16.0 * until * arguments["frequency_hz"]) + 2)
+
+        return friction.run(scene.slider, x, simulated)
+
+    def data(self, scene: "Scene") -> "tuple[Model, Array]":
+        """(model, y of the model as measured). Raises InputError."""
+        import numpy as np
+
+        if (own := self.synthetic) is not None:
+            modes = self.what == "frequencies"
+            x = np.arange(own.span[0], own.span[1] + 0.5) if modes else np.linspace(*own.span, own.points)
+            model = self.model_of(scene, x)
+            exact = model.predict(model.values(own.true))[0]
+            return model, exact + own.noise * np.random.default_rng(own.seed).standard_normal(len(exact))
+        x, y, phase = np.array(self.x), np.array(self.y), np.deg2rad(self.phase_deg) if self.phase_deg else None
+        if self.file is not None:
+            from verify.compare.reading import read_frequencies, read_series
+
+            if self.what == "frequencies":
+                found = read_frequencies(Path(self.file))
+                x, y = np.array(found.numbers or range(1, len(found.values) + 1)), found.hertz
+            else:
+                x, y, phase = read_series(Path(self.file))
+        model, order = self.model_of(scene, x, phase is not None), ORDERS.index(self.sensor)
+        if self.what != "response" and (phase is not None or order):
+            raise InputError(f"identify.what = {self.what!r}: its data have no phase or sensor, leave these out")
+        if model.logs and (y <= 0.0).any():
+            raise InputError("identify.y: a frequency or |H| is not positive, leave it out")
+        y = np.log(y / (2.0 * np.pi * x) ** order) if model.logs else y
+        return model, y if phase is None else np.concatenate([y, phase - 0.5 * np.pi * order])
+
+    def fitted(self, scene: "Scene", cache: "SolutionCache") -> "tuple[Model, Array, Fit]":
+        """(model, data, fit), computed once. Raises InputError."""
+        from verify.identify.fit import fit
+
+        key: Any = ("identify", msgspec.json.encode(self), scene.beam, scene.slider, scene.drive)
+        if key not in cache.motors:
+            model, data = self.data(scene)
+            true = self.synthetic.true if self.synthetic else {}
+            start = {name: value for name, value in true.items() if name not in self.parameters} | self.start
+            found = fit(model, data, self.parameters, start=start, noise=self.noise, profiles=self.profiles)
+            cache.motors[key] = model, data, found
+        return cache.motors[key]  # type: ignore[no-any-return]
+
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+        """Fit the parameters. Raises InputError."""
+        import numpy as np
+
+        from verify.identify.fit import SMALL
+
+        progress(f"fit of {', '.join(self.parameters)}")
+        model, data, found = self.fitted(scene, cache)
+        margins = [void("the fit", words, leads=True) for words in found.rejected if words != SMALL]
+        known, rows, rejected = list[str](), list[list[Any]](), bool(margins)
+        for one in found.estimates.values():
+            half = 0.5 * (one.interval[1] - one.interval[0])
+            if one.reason:
+                margins.append(void(one.name, f"{one.name} is not identifiable, {one.reason}"))
+            else:
+                known.append(f"{one.name} = {one.value:.6g} ± {half:.2g} {one.unit}".rstrip())
+                size, name = half / abs(one.value), f"95 % interval of {one.name}"
+                margins.append(Margin(name=name, size=size, fine=np.inf, limit=np.inf))
+            sd, verdict = one.sd if one.sd < np.inf else None, one.reason and f"not identifiable: {one.reason}"
+            ends = (*one.interval, *(one.profile or (None, None)))
+            rows.append([one.name, one.value, one.unit, sd, *ends, verdict or "identified"])
+        names = ("lower", "upper", "profile lower", "profile upper")
+        columns = [Column("parameter"), Column("value", format=".6g"), Column("unit"), Column("sd", format=".3g")]
+        columns += [*(Column(name, format=".6g") for name in names), Column("verdict")]
+        tests = [Column(name, format=".3g") for name in ("noise", "degrees of freedom", "chi^2", "fit", "white")]
+        row = [found.noise, found.freedom, found.chi2, found.fitness, found.whiteness]
+        x, n, points = model.x, len(model.x), {"linestyle": "None", "marker": "."}
+        shown = [np.exp(values[:n]) if model.logs else values[:n] for values in (data, found.curve)]
+        rest = found.residuals.reshape(model.channels, -1) / found.noise
+        lines = [
+            (name, x, one, points) for name, one in zip(("|H|", "phase") if len(rest) > 1 else ("",), rest, strict=True)
+        ]
+
+        def draw(ax: "Axes") -> None:
+            plot_lines(ax, [("data", x, shown[0], points), ("fit", x, shown[1], {})], *model.labels)
+            ax.set_yscale("log" if self.what == "response" else "linear")
+
+        residuals = partial(plot_lines, lines=lines, x=model.labels[0], y=("residual over its sd", ""))
+        return Result(
+            summary=f"{', '.join(known)} (95 %)." if known and not rejected else "",
+            tables=[Table("Parameters", columns, rows, NOTES), Table("Residuals", tests, [row])],
+            figures=[
+                Figure("identify-fit", "Data and fit", "Least squares.", draw),
+                Figure("identify-residuals", "Residuals", RESIDUALS, residuals),
+            ],
+            warnings=[f"{words[0].upper()}{words[1:]}." for words in found.rejected],
+            data={"residuals": found.residuals},
+            margins=margins,
+        )
