@@ -19,8 +19,8 @@ from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
 from verify.quantities.base import as_plain, as_text
 from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
-from verify.studies.motion import Motion
 from verify.studies.identify import Identify, Synthetic
+from verify.studies.motion import Motion
 from verify.travelling_wave import measure
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -62,7 +62,7 @@ SCENES = {
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
     "actuated": scene_of(STRIP, actuator=Stack(layers=20, layer_thickness=5e-4, area=25e-6)),
-    "decay": SimpleNamespace(**vars(BARE) | {"slider": RIDER, "studies": {"identify": DECAY}}),
+    "decay": Scene(name="decay", beam=STRIP, slider=RIDER, studies={"identify": DECAY}),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
