@@ -99,8 +99,39 @@ def test_public_models():
     ]
     # bodies between two hinges at one place have 5 % of the mass and a quarter of the inertia
     assert [[text.split()[0] for text in one["faults"]] for one in tether] == [["EI/l", "inertia", "centre"]] * 2
+    assert "cancel at mode 1" in judge_file(DATA / "hose.xml", None).warnings[0]
     errors = [one["error"][0] for one in (*rod, *hose, *tether)]
     assert errors == pytest.approx([0.3709, -0.0356, -0.1383, -0.1383], abs=1e-4)
+
+
+def chain_text(n, joint, geom, step):
+    """MJCF of n equal bodies along `step`, with gravity."""
+    bodies = "".join(f'<body pos="{step if i else "0 0 0"}">{joint.format(i=i)}{geom}' for i in range(n))
+    return f"<mujoco><worldbody>{bodies}{'</body>' * n}</worldbody></mujoco>"
+
+
+def test_public_whip_of_point_masses_under_gravity(tmp_path):
+    """mosesnah-shared/whip-project-targeting, models/25DOF_whip.xml: a point mass at the far joint of each link."""
+    joint = '<joint name="j{i}" axis="0 -1 0" stiffness="0.242" damping="0.092"/>'
+    geom = '<geom type="sphere" pos="0 0 -0.072" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
+    assert [text.split()[0] for text in found["faults"]] == ["EI/l", "inertia", "centre"]
+    assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
+    weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
+    assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
+    assert judge_file(out, None).margins[0].remedy == "give the links m l^2/12 about l/2"
+
+
+def test_ball_joints_and_the_modulus_of_round_links_are_named(tmp_path):
+    joint = '<joint type="ball" stiffness="2333.3333"/>'
+    geom = '<geom type="cylinder" fromto="0 0 0 .025 0 0" size=".005" density="2700" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, chain_text(20, joint, geom, ".025 0 0"))
+    assert found["faults"] == ["EI/l at the wall"]
+    assert "a ball joint is read as three hinges" in warnings[0]
+    assert "E = 118.8 GPa, or 70 GPa if it is a square section's" in warnings[1]
+    again = judge_file(out, None)
+    assert again.data["passed"]
+    assert [one["rule"] for one in again.data["chains"]] == ["Gregory's weights at the wall"] * 2
 
 
 HINGE = (
@@ -133,6 +164,11 @@ def test_what_is_no_chain_is_one_sentence(tmp_path, body, sentence, capsys):
 
 def test_command_and_files_without_springs(tmp_path, capsys):
     path = tmp_path / "beam.urdf"
+    assert status_of(["export", "--beam", PHRASE, "--count", "14", "--to", str(path)]) == 0
+    assert status_of(["compare", str(path), str(path)]) == 2
+    assert "give one file" in capsys.readouterr().err
+    assert status_of(["compare", str(path), "--corrected", str(tmp_path / "out.xml")]) == 2
+    assert "the format stays" in capsys.readouterr().err
     write(describe(STEEL, 14, wall="half"), path)
     assert status_of(["compare", "--beam", PHRASE, str(path), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["chains"][0]["rule"] == "2EI/l at the wall"

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from verify.commands.chain import CHAINS, fewest
 from verify.commands.shared import BeamCommand, overrides_option, progress, scene_argument
 from verify.errors import printable
 
@@ -34,15 +35,22 @@ def export(
     """Write modes, the driven wave or the motion of SCENE to FILE.
 
     vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures. The chart of
-    convergence is written as png or svg.
+    convergence is written as png or svg. A chain of rigid bodies: xml (MJCF), sdf, urdf, _exudyn.py, _pinocchio.py, in
+    a plane; `verify chain` has its options.
     Example: `verify export paper --what modes --to modes.vtu`
     """
     from verify.io.data import Request
     from verify.io.export import write
     from verify.scene.load import load_scene
 
-    request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     loaded = load_scene(scene, overrides)
+    if path.lower().endswith((*CHAINS, ".py")):
+        from verify.engines.description import describe
+        from verify.engines.writers import write as write_chain
+
+        described = describe(loaded.beam, count or fewest(loaded.beam, mode or 3, 0.01))
+        return click.echo(printable(write_chain(described, Path(path))))
+    request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
         summary = write(loaded, Path(path), request, step)
     click.echo(printable(f"wrote {path}: {summary}"))

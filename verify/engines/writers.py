@@ -215,6 +215,7 @@ def data(chain: RigidChain) -> dict[str, object]:
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
     ".xml": mjcf,
+    ".mjcf": mjcf,
     ".sdf": lambda chain: robot(chain, _SDF),
     ".urdf": lambda chain: robot(chain, _URDF),
     "_exudyn.py": lambda chain: script(chain, "exudyn"),
@@ -227,7 +228,7 @@ _WRITERS: dict[str, Callable[[RigidChain], str]] = {
 def write(chain: RigidChain, path: Path) -> str:
     """Write a chain to a file by the end of its name, whole or not at all; returns a sentence on what was written.
 
-    .xml is MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
+    .xml and .mjcf are MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
     """
     kind = next((end for end in _WRITERS if path.name.lower().endswith(end)), None)
     if kind is None:
