@@ -33,17 +33,9 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
-    scene: str,
-    overrides: tuple[str, ...],
-    count: int | None,
-    mode: int,
-    error: str,
-    wall: str,
-    in_space: bool,
-    damping: str,
-    path: str | None,
-    **formats: bool,
-) -> None:
+    scene: str, overrides: tuple[str, ...], count: int | None, mode: int, error: str, wall: str, in_space: bool,
+    damping: str, path: str | None, **formats: bool,
+) -> None:  # fmt: skip
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
 
     Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.

@@ -16,22 +16,14 @@ from verify.errors import printable
 @click.option("--to", "path", required=True, metavar="FILE", help="The suffix is the file type.")
 @click.option("--model", default="segment", show_default=True, metavar="NAME", help="segment, fem or analytic.")
 @click.option(
-    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements. Default: the scene's; within 1 %."
+    "--count", type=click.IntRange(1), metavar="N", help="Segments or elements. Default: the scene's; within 1 %."
 )
-@click.option(
-    "--mode", type=click.IntRange(min=1), metavar="N", help="The mode of a picture, the number of modes of data."
-)
-@click.option("--samples", type=click.IntRange(min=2), metavar="N", help="Instants of a period or of a motion.")
+@click.option("--mode", type=click.IntRange(1), metavar="N", help="The mode of a picture, the number of modes of data.")
+@click.option("--samples", type=click.IntRange(2), metavar="N", help="Instants of a period or of a motion.")
 def export(
-    scene: str,
-    overrides: tuple[str, ...],
-    what: str | None,
-    path: str,
-    model: str,
-    count: int | None,
-    mode: int | None,
-    samples: int | None,
-) -> None:
+    scene: str, overrides: tuple[str, ...], what: str | None, path: str, model: str, count: int | None,
+    mode: int | None, samples: int | None,
+) -> None:  # fmt: skip
     """Write modes, the driven wave or the motion of SCENE to FILE.
 
     vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures. The chart of

@@ -170,9 +170,7 @@ def judge_file(
     from verify.report.result import Column, Result, Table
 
     if corrected and corrected.suffix.lower() != path.suffix.lower():
-        raise InputError(
-            f"corrected = {shown(str(corrected))}: the format stays, give a name with the end {path.suffix}"
-        )
+        raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
     (kind, solids, gravity), judged = read(path), list[Judged]()
     found = lines(solids, path.name)
     in_space = len(found) > 1 and all(line.solid for line in found)
@@ -203,9 +201,7 @@ def judge_file(
             failure = f"{text}: {per_cent(size)} {where}"
             margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
         if any(changes) and abs(after[0]) > max(abs(errors[0]), within):
-            warnings.append(
-                f"{axis}: two errors of the file cancel at mode 1, give links of one length and these joints"
-            )
+            warnings.append(f"{axis}: errors of the file cancel at mode 1, give links of one length and these joints")
         if any(changes) or not text:
             size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
             margins.append(Margin(name=what, size=size, where=where, remedy="give more links", **limits))

@@ -124,9 +124,8 @@ def _mjcf(path: Path) -> tuple[list[Solid], Array]:
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
         drawn = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
         radii = [float(model.geom_size[i, 0]) for i in drawn if model.geom_type[i] in ROUND]
-        solids.append(
-            Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b)), max(radii, default=0.0))
-        )
+        own_moves, radius, centre = tuple(moves(b)), max(radii, default=0.0), data.xipos[b].copy()
+        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius))
     return solids, np.array(model.opt.gravity)
 
 
