@@ -45,8 +45,12 @@ def test_rule_at_the_wall_is_named_and_corrected_to_the_best_chain(tmp_path, wal
         assert mujoco_hz(out)[:5] == pytest.approx(best.frequencies_hz(n_modes=5), rel=1e-9)
 
 
-def test_first_link_fixed_and_its_adapted_joints(tmp_path):
+@pytest.mark.parametrize("frame", [0.0, 0.5, 1.0])
+def test_first_link_fixed_and_its_adapted_joints(tmp_path, frame):
+    """The frame of the first link is at its beginning, its centre, its end."""
     text = re.sub(r'<joint name="joint0_.*?/>', "", mjcf(describe(STEEL, 14, wall="full")))
+    text = re.sub('(?s)("link0" pos=")[^ ]+( .*?<inertial pos=")[^ ]+( .*?"link1" pos=")[^ ]+',
+                  rf"\g<1>{frame / 14}\g<2>{(0.5 - frame) / 14}\g<3>{(1 - frame) / 14}", text)  # fmt: skip
     found, warnings, out = judged(tmp_path, text)
     assert found["faults"] == ["first link fixed at the wall"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((0.0768, 1.04e-3), rel=0.02)

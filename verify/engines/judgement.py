@@ -153,7 +153,8 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
     beam.check_features("the comparison of a file", ("section", "mass"))
     beam = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
-        raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m")
+        remedy = ": a first link without a joint must be a body" * (length < beam.length)
+        raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m{remedy}")
     planes, stiffness = [in_plane(beam, axis) for axis in ("bending", "width")], judge(line).stiffness
     return min(planes, key=lambda one: abs(np.log(stiffness / one.bending_stiffness)))
 

@@ -226,10 +226,11 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
         parts.append((before[0] + own, members + before[1]))
     if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
-        ahead, first = (parts[i][0][-1].at for i in (1, 0))
-        reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
-        if reach and abs(solids[base].mass / reach / (parts[0][1][0].mass / step) - 1.0) < 0.05:
-            parts.insert(0, ([], [solids[base]]))
+        ahead, first, held = parts[1][0][-1].at, parts[0][0][-1].at, solids[base]
+        density = parts[0][1][0].mass / np.linalg.norm(ahead - first)
+        for start in (held.origin, 2.0 * held.centre - first):  # the frame of a link may be at its centre
+            if abs(held.mass - density * (reach := np.linalg.norm(first - start))) < 0.05 * density * reach:
+                return [([], [held._replace(origin=start)]), *parts]
     return parts
 
 
