@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
-from verify import Beam
+from verify import Beam, SegmentModel
 from verify.cli import status_of
 from verify.engines.description import RULES, describe
 from verify.engines.judgement import judge_file
@@ -124,6 +124,22 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
     assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
     assert judge_file(out, None).margins[0].remedy == "give the links m l^2/12 about l/2"
+
+
+def test_half_a_link_fixed_at_the_wall_is_right_as_it_is(tmp_path):
+    """Midpoint rule: joints l/2, 3l/2, ... from the wall with EI/l each, half a link at both ends; order 2."""
+    text, joint = "", '<joint axis="0 1 0" stiffness="5017.6"/>'
+    for i, length in enumerate([0.5 / 14, *[1 / 14] * 13, 0.5 / 14]):
+        at = 0.5 * length
+        text += f'<body pos="{(0.5 + 0.5 * (i > 1)) / 14 * (i > 0)} 0 0">{joint * (i > 0)}<geom type="box" pos="{at} 0 0" '
+        text += f'size="{at} .02 .004" density="7850" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, f"<mujoco><worldbody>{text}{'</body>' * 15}</worldbody></mujoco>")
+    assert (found["faults"], len(warnings)) == ([], 1)
+    assert found["rule"] == "fixed link in series with its joint at the wall"
+    assert found["stiffness"] == pytest.approx(358.4, rel=1e-9)
+    welded = SegmentModel(STEEL, 14, wall="welded").modes(2).frequencies_hz
+    assert found["frequencies_hz"][:2] == pytest.approx(welded, rel=2e-4)  # geoms have rotary inertia
+    assert out.read_bytes() == (tmp_path / "beam.xml").read_bytes()
 
 
 def test_ball_joints_and_the_modulus_of_round_links_are_named(tmp_path):

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 HELD = (np.nan, 23 / 12, 7 / 12)
 """Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
 ADAPTED = "first link fixed, adapted joints,"
+SERIES = "fixed link in series with its joint"
+"""All of a first link that is fixed is in its joint, as with half a link at the wall and EI/l behind: order 2."""
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
@@ -67,12 +69,16 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     bases = [0.5 * (np.append(soft[0], soft[:-1]) + soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
         bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
-    rule, spacing, stiffness = _rule(k, bases, support)
+    weld = np.ones(n)
+    weld[1] = 1.0 + soft[0] / (soft[0] + soft[1])
+    if soft[-1] < 0.75 * soft[-2]:  # half a link at the end too, where the moment is small
+        weld[-1] = 1.0 + soft[-1] / (soft[-2] + soft[-1])
+    rule, spacing, stiffness = _rule(k, bases, support, weld)
     reference = stiffness if beam is None else float(values[0])
     even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
     hinged = reference / bases[0] / wall_factors((support, "free"), n, best)[:-1]
-    behind = np.append(HELD if even and n > len(HELD) else [np.nan, 1.5], np.ones(n))[:n]
+    behind = np.append(HELD, np.ones(n))[:n] if even and n > len(HELD) else np.append(np.nan, weld[1:])
     springs = reference / bases[0] / behind if held else hinged
     if beam is None:
         beam = _meant(line, expected, support, reference)
@@ -85,12 +91,13 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
         return RigidChain(beam, rule, joints, links, theory=theory)
 
     where = "at the wall" if support == "clamped" else f"{support} end"
-    faults = [f"{rule} {where}"] if rule != RULES[best] and support == "clamped" else []
-    faults += _faults(line, expected, spacing, stiffness / reference)
+    right = RULES[best], *([] if even else [SERIES])
+    wall = [f"{rule} {where}"] if rule not in right and support == "clamped" else []
+    faults = wall + _faults(line, expected, spacing, stiffness / reference)
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
     text = f"{rule} {where}" if support == "clamped" else where
-    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice * held)
+    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice * (held and bool(wall)))
 
 
 def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str]:
@@ -129,12 +136,12 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
     )  # fmt: skip
 
 
-def _rule(k: Array, bases: list[Array], support: str) -> tuple[str, int, float]:
-    """(rule at the wall, spacing, EI): the first ones by which all joints have the same EI."""
+def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str, int, float]:
+    """(rule at the wall, spacing, EI): the first ones by which all joints have the same EI; `weld`: that of SERIES."""
     held = bool(np.isnan(k[0]))
     names = [name for name in WALLS if name != "welded"]
-    names = ["rigid", ADAPTED] if held else names if support == "clamped" else ["full"]
-    rows = [HELD if name == ADAPTED else 1.0 + np.array(WALLS.get(name, ())) for name in names]
+    names = ["rigid", ADAPTED, SERIES] if held else names if support == "clamped" else ["full"]
+    rows: list[Any] = [{ADAPTED: HELD, SERIES: weld}.get(name, 1.0 + np.array(WALLS.get(name, ()))) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
     spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
     best = int(np.argmin(spreads))
