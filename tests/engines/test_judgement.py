@@ -5,9 +5,10 @@ import re
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
-from verify import Beam, SegmentModel
+from verify import Beam, Section, SegmentModel
 from verify.cli import status_of
 from verify.engines.description import RULES, describe
 from verify.engines.judgement import judge_file
@@ -126,12 +127,25 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     assert judge_file(out, None).margins[0].remedy == "give the links m l^2/12 about l/2"
 
 
+def test_beam_with_a_step_needs_a_scene(tmp_path):
+    path = tmp_path / "beam.sdf"
+    stepped = replace(STEEL, section=(Section(length=0.5), Section(length=0.5, thickness=0.004)))
+    write(describe(stepped, 14, wall="full"), path)
+    with pytest.raises(InputError, match="masses and stiffnesses of the links vary"):
+        judge_file(path, None)
+    found = judge_file(path, stepped).data["chains"][0]
+    assert found["faults"] == ["EI/l at the wall"]
+    assert found["error"] == pytest.approx(describe(stepped, 14, wall="full").errors(n_modes=5), abs=1e-9)
+
+
 def test_half_a_link_fixed_at_the_wall_is_right_as_it_is(tmp_path):
     """Midpoint rule: joints l/2, 3l/2, ... from the wall with EI/l each, half a link at both ends; order 2."""
     text, joint = "", '<joint axis="0 1 0" stiffness="5017.6"/>'
     for i, length in enumerate([0.5 / 14, *[1 / 14] * 13, 0.5 / 14]):
         at = 0.5 * length
-        text += f'<body pos="{(0.5 + 0.5 * (i > 1)) / 14 * (i > 0)} 0 0">{joint * (i > 0)}<geom type="box" pos="{at} 0 0" '
+        text += (
+            f'<body pos="{(0.5 + 0.5 * (i > 1)) / 14 * (i > 0)} 0 0">{joint * (i > 0)}<geom type="box" pos="{at} 0 0" '
+        )
         text += f'size="{at} .02 .004" density="7850" contype="0" conaffinity="0"/>'
     found, warnings, out = judged(tmp_path, f"<mujoco><worldbody>{text}{'</body>' * 15}</worldbody></mujoco>")
     assert (found["faults"], len(warnings)) == ([], 1)

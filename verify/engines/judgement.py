@@ -30,6 +30,7 @@ HELD = (np.nan, 23 / 12, 7 / 12)
 ADAPTED = "first link fixed, adapted joints,"
 SERIES = "fixed link in series with its joint"
 """All of a first link that is fixed is in its joint, as with half a link at the wall and EI/l behind: order 2."""
+IRREGULAR = "irregular joints"
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
@@ -74,6 +75,10 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     if soft[-1] < 0.75 * soft[-2]:  # half a link at the end too, where the moment is small
         weld[-1] = 1.0 + soft[-1] / (soft[-2] + soft[-1])
     rule, spacing, stiffness = _rule(k, bases, support, weld)
+    if beam is None and rule == IRREGULAR and np.sum(abs(masses - expected) > 0.01 * expected) > _few(n):
+        raise InputError(
+            "masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene in front"
+        )
     reference = stiffness if beam is None else float(values[0])
     even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
@@ -120,11 +125,16 @@ def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str
     return found
 
 
+def _few(count: int) -> int:
+    """Most links on which bodies are looked for."""
+    return max(1, count // 4)
+
+
 def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
     """The beam of a file: bodies on the few links heavier than `expected`, kg, whose inertia the links leave."""
     lengths, masses, centres, inertias = line.links.T
     ends, middle, more, heavy = np.cumsum(lengths), 0.5 * lengths, masses - expected, masses > 1.01 * expected
-    heavy &= heavy.sum() <= max(1, len(masses) // 4)
+    heavy &= heavy.sum() <= _few(len(masses))
     x = (masses * centres - expected * middle) / np.where(heavy, more, 1.0)
     own = inertias - expected * (lengths**2 / 12.0 + (middle - centres) ** 2) - more * (x - centres) ** 2
     spots = np.stack([np.minimum(ends - lengths + x, ends[-1]), more, np.maximum(own, 0.0)], axis=1)[heavy].tolist()
@@ -149,7 +159,7 @@ def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str,
     text = RULES.get(name, name)
     if spreads[best] > ALIKE:
         inner = (k * bases[0])[1:]
-        spacing, stiffness, text = 0, float(np.median(inner)), "irregular joints"
+        spacing, stiffness, text = 0, float(np.median(inner)), IRREGULAR
         if inner.std() < ALIKE * stiffness:
             text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l"
     return text, spacing, stiffness
@@ -162,7 +172,8 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
         remedy = ": a first link without a joint must be a body" * (length < beam.length)
         raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m{remedy}")
-    planes, stiffness = [in_plane(beam, axis) for axis in ("bending", "width")], judge(line).stiffness
+    planes, steps = [in_plane(beam, axis) for axis in ("bending", "width")], line.links[:, 0]
+    stiffness = float(np.median(0.5 * (steps[1:] + steps[:-1]) * line.springs[1:]))
     return min(planes, key=lambda one: abs(np.log(stiffness / one.bending_stiffness)))
 
 
