@@ -75,10 +75,8 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     if soft[-1] < 0.75 * soft[-2]:  # half a link at the end too, where the moment is small
         weld[-1] = 1.0 + soft[-1] / (soft[-2] + soft[-1])
     rule, spacing, stiffness = _rule(k, bases, support, weld)
-    if beam is None and rule == IRREGULAR and np.sum(abs(masses - expected) > 0.01 * expected) > _few(n):
-        raise InputError(
-            "masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene in front"
-        )
+    if beam is None and rule == IRREGULAR and np.sum(abs(masses - expected) > 0.01 * expected) > max(1, n // 4):
+        raise InputError("masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene")
     reference = stiffness if beam is None else float(values[0])
     even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
@@ -125,16 +123,11 @@ def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str
     return found
 
 
-def _few(count: int) -> int:
-    """Most links on which bodies are looked for."""
-    return max(1, count // 4)
-
-
 def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
     """The beam of a file: bodies on the few links heavier than `expected`, kg, whose inertia the links leave."""
     lengths, masses, centres, inertias = line.links.T
     ends, middle, more, heavy = np.cumsum(lengths), 0.5 * lengths, masses - expected, masses > 1.01 * expected
-    heavy &= heavy.sum() <= _few(len(masses))
+    heavy &= heavy.sum() <= max(1, len(masses) // 4)
     x = (masses * centres - expected * middle) / np.where(heavy, more, 1.0)
     own = inertias - expected * (lengths**2 / 12.0 + (middle - centres) ** 2) - more * (x - centres) ** 2
     spots = np.stack([np.minimum(ends - lengths + x, ends[-1]), more, np.maximum(own, 0.0)], axis=1)[heavy].tolist()
@@ -242,7 +235,8 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
 
     Gravity counts from a tenth of EI/L^2 on, which changes the first frequency of a cantilever by about 0.6 %.
     """
-    hints, moving, own = list[str](), [one for one in solids if one.moves], judged[0].present.beam
+    hints, own, named = list[str](), judged[0].present.beam, {name for one in judged for name in one.line.joints}
+    moving = [one for one in solids if any(move.joint in named for move in one.moves)]
     if any(len({move.joint for move in one.moves}) < len(one.moves) for one in moving):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
     along = moving[-1].moves[0].at - moving[0].moves[0].at
@@ -252,10 +246,8 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
     radius = float(np.median([one.radius for one in moving]))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9
-        square = f"or {modulus / SQUARE:.4g} GPa if it is a square section's"
-        hints.append(
-            f"round links of {2e3 * radius:.4g} mm: EI is that of E = {modulus:.4g} GPa, {square}; check by --beam"
-        )
+        text = f"E = {modulus:.4g} GPa, or {modulus / SQUARE:.4g} GPa if it is a square section's; check by --beam"
+        hints.append(f"round links of {2e3 * radius:.4g} mm: EI is that of {text}")
     return hints
 
 

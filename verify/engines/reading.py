@@ -217,9 +217,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
     if other := set(sprung) - set(chain):
         raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
     for move in (move for i in chain for move in solids[i].moves if move.bound):
-        raise InputError(
-            f"{name}: joint {shown(move.joint)} {move.bound}: take it out, only hinges and springs are judged"
-        )
+        raise InputError(f"{name}: joint {shown(move.joint)} {move.bound}: take it out, hinges and springs are judged")
     parts = list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
@@ -263,9 +261,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) != 1 or not moves[0].stiffness:
-                raise InputError(
-                    f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}: a chain begins at a wall"
-                )
+                text = f"has no hinge with a stiffness for {axis}: a chain begins at a wall"
+                raise InputError(f"{name}: {shown(mains[j].name)} {text}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
