@@ -80,6 +80,12 @@ def test_mass_models_are_named(tmp_path, place, factor, fault):
     assert (found["faults"], found["mass_per_length"]) == ([fault], pytest.approx(2.512))
 
 
+def test_springdamper_overrides_the_stiffness(tmp_path):
+    text = re.sub('stiffness="[^"]*" damping="[^"]*"', 'springdamper="0.02 0.1"', mjcf(describe(STEEL, 3)))
+    with pytest.raises(InputError, match="mj_saveLastXML"):
+        judged(tmp_path, text)
+
+
 def test_default_class_and_tip_mass(tmp_path):
     head = '<default><joint stiffness="5017.6"/></default>\n<worldbody><!-- <joint/> -->'
     text = mjcf(describe(STEEL, 14, wall="full")).replace("<worldbody>", head).replace('inertiafromgeom="false"', "")
@@ -125,6 +131,25 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
     assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
     assert judge_file(out, None).margins[0].remedy == "give the links m l^2/12 about l/2"
+
+
+@pytest.mark.parametrize(("pose", "angle", "about", "axis"), [
+    ("", "1.5707963267948966", "", "0 1 0"), (' degrees="true"', "90", "", "0 1 0"),
+    ("", "1.5707963267948966", ' expressed_in="__model__"', "0 1 0"), ("", "1.5707963267948966", "", "1 0 0"),
+    ("", "1.5707963267948966", ' expressed_in="__model__"', "0 0 1"),
+])  # fmt: skip
+def test_frames_of_sdf(tmp_path, pose, angle, about, axis):
+    """Links along z of their own frame, which is pitched into x of the model."""
+    text, parent, mass, spin = "", "world", 2.512 / 14, 2.512 / 14**3 / 12
+    for i in range(14):
+        text += f"""<link name="l{i}"><pose{pose}>{i / 14} 0 0 0 {angle} 0</pose><inertial><pose>0 0 {0.5 / 14}</pose>
+            <mass>{mass}</mass><inertia><ixx>{spin}</ixx><iyy>{spin}</iyy><izz>0</izz></inertia></inertial></link>
+            <joint name="j{i}" type="revolute"><parent>{parent}</parent><child>l{i}</child><axis><xyz{about}>{axis}</xyz>
+            <dynamics><spring_stiffness>5017.6</spring_stiffness></dynamics></axis></joint>"""
+        parent = f"l{i}"
+    (tmp_path / "beam.sdf").write_text(f"<sdf><model>{text}</model></sdf>")
+    found = judge_file(tmp_path / "beam.sdf", None).data["chains"][0]
+    assert found["error"] == pytest.approx(describe(STEEL, 14, wall="full").errors(n_modes=5), abs=1e-9)
 
 
 def test_beam_with_a_step_needs_a_scene(tmp_path):

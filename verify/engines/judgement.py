@@ -273,7 +273,7 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
         compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
         bodies = [[one.tag for one in body] for body in ElementTree.fromstring(data).iter("body")]
         behind = any("joint" in names[names.index("body") :] for names in bodies if "body" in names)
-        alike = len(tags) == len(compiled) and not behind
+        alike = len(tags) == len(compiled) and not behind and b"springdamper" not in text  # it overrides stiffness
         for found, (joint, present) in zip(tags, compiled.items(), strict=False):
             named, own = (
                 re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", found[0]) for word in (b"name", b"stiffness")

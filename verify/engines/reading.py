@@ -139,10 +139,12 @@ def _value(one: ElementTree.Element | None, path: str) -> str:
 def _pose(one: ElementTree.Element | None) -> Array:
     """The transformation (4, 4) of an element's origin (URDF) or pose (SDF): x y z, roll pitch yaw."""
     words = _value(one, "pose") or f"{_value(one, 'origin/xyz') or '0 0 0'} {_value(one, 'origin/rpy')}"
+    if len(words.split()) > 6:
+        raise ValueError("a pose by a quaternion, give roll, pitch and yaw")
     x, y, z, roll, pitch, yaw = [*map(float, words.split()), 0.0, 0.0, 0.0][:6]
-    pose = np.eye(4)
+    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, "pose/degrees") == "true" else 1.0
     for angle, i, k in ((yaw, 0, 1), (pitch, 2, 0), (roll, 1, 2)):
-        turn, c, s = np.eye(4), np.cos(angle), np.sin(angle)
+        turn, c, s = np.eye(4), np.cos(unit * angle), np.sin(unit * angle)
         turn[[i, k, i, k], [i, k, k, i]] = c, c, -s, s
         pose = pose @ turn
     pose[:3, 3] = x, y, z
@@ -182,7 +184,9 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
             if not mass:
                 raise InputError(f"{name}: link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
             axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
-            about = turn[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
+            old = "__model__" * (_value(axis, "use_parent_model_frame") in ("1", "true"))
+            frame = place(_value(axis, "xyz/expressed_in") or old or joint)
+            about = frame[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
             own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
             moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
         centre = at @ _pose(inertial)
