@@ -94,6 +94,9 @@ def test_default_class_and_tip_mass(tmp_path):
     found, _, out = judged(tmp_path, text.replace('<site name="tip"', tip))
     assert found["faults"] == ["EI/l at the wall"]
     assert abs(found["corrected_error"][0]) < 2e-6
+    bare = judge_file(out, STEEL)
+    assert bare.data["chains"][0]["faults"] == ["bodies 0.4 kg heavier than those of the beam"]
+    assert [margin.remedy[:14] for margin in bare.margins] == ["give the links"]
     assert out.read_text().count("stiffness=") == 4
 
 
@@ -130,7 +133,7 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
     assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
-    assert judge_file(out, None).margins[0].remedy == "give the links m l^2/12 about l/2"
+    assert judge_file(out, None).margins[0].remedy == "give the links the mass of the beam, m l^2/12 about l/2"
 
 
 @pytest.mark.parametrize(("pose", "angle", "about", "axis"), [

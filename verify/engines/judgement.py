@@ -41,7 +41,8 @@ ALIKE, SAME = 2e-3, 1e-9
 class Judged(NamedTuple):
     """A chain as it is and with correct joints, whose axis is "bending" in either plane.
 
-    `stiffness`: EI, N m^2. `springs`: correct ones, N m/rad. `advice`: a better wall than a fixed link, or ''.
+    `stiffness`: EI, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those of links.
+    `advice`: a better wall than a fixed link, or ''.
     """
 
     line: Line
@@ -51,6 +52,7 @@ class Judged(NamedTuple):
     stiffness: float
     springs: Array
     faults: list[str]
+    links: list[str]
     advice: str
 
 
@@ -83,8 +85,8 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     hinged = reference / bases[0] / wall_factors((support, "free"), n, best)[:-1]
     behind = np.append(HELD, np.ones(n))[:n] if even and n > len(HELD) else np.append(np.nan, weld[1:])
     springs = reference / bases[0] / behind if held else hinged
-    if beam is None:
-        beam = _meant(line, expected, support, reference)
+    beam = beam or _meant(line, expected, support, reference)
+    bodies = sum(one.mass for one in beam.mass)
 
     def chain(springs: Array) -> RigidChain:
         hinges = [() if np.isnan(one) else (Hinge("bending", float(one)),) for one in [*springs, 0.0]]
@@ -96,21 +98,34 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     where = "at the wall" if support == "clamped" else f"{support} end"
     right = RULES[best], *([] if even else [SERIES])
     wall = [f"{rule} {where}"] if rule not in right and support == "clamped" else []
-    faults = wall + _faults(line, expected, spacing, stiffness / reference)
+    joints, links = _faults(line, expected, bodies, spacing, stiffness / reference)
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
     text = f"{rule} {where}" if support == "clamped" else where
-    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, advice * (held and bool(wall)))
+    return Judged(
+        line,
+        chain(k),
+        chain(springs),
+        text,
+        stiffness,
+        springs,
+        wall + joints + links,
+        links,
+        advice * (held and bool(wall)),
+    )
 
 
-def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str]:
-    """What is wrong but for the wall: stiffness `ratio` times that of the beam, links `expected`, kg."""
-    (lengths, masses, centres, inertias), found = line.links.T, list[str]()
+def _faults(line: Line, expected: Array, bodies: float, spacing: int, ratio: float) -> tuple[list[str], list[str]]:
+    """What is wrong with joints but for the wall, EI `ratio` times that of the beam, and with links.
+
+    `expected`: masses of the links without the `bodies` of the beam, kg.
+    """
+    (lengths, masses, centres, inertias), joints, found = line.links.T, list[str](), list[str]()
     if spacing:
-        found.append(f"stiffness from {SPACINGS[spacing]} in place of two half links in series")
+        joints.append(f"stiffness from {SPACINGS[spacing]} in place of two half links in series")
     if abs(ratio - 1.0) > ALIKE:
         words = ": a square section's for a round one, 1.3029 in frequency" * (abs(ratio / SQUARE - 1.0) < 0.01)
-        found.append(f"stiffness {ratio:.5g} times that of the beam{words}")
+        joints.append(f"stiffness {ratio:.5g} times that of the beam{words}")
     ratios = inertias / (masses * lengths**2), centres / lengths, masses / expected
     inertia, centre, mass = (float(np.median(one)) for one in ratios)
     if not (0.98 / 12 < inertia < 1.02 / 12 or line.solid):
@@ -120,7 +135,9 @@ def _faults(line: Line, expected: Array, spacing: int, ratio: float) -> list[str
         found.append(f"centre of mass at {centre:.3g} l in place of l/2")
     if abs(mass - 1.0) > 0.01:
         found.append(f"mass {mass:.4g} times that of the beam")
-    return found
+    elif abs(more := masses.sum() - expected.sum() - bodies) > 0.01 * (expected.sum() + bodies):
+        found.append(f"bodies {abs(more):.4g} kg {'heavier' if more > 0.0 else 'lighter'} than those of the beam")
+    return joints, found
 
 
 def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
@@ -207,8 +224,9 @@ def judge_file(
         each = list(zip(range(n), one.line.joints, *pairs, changes, strict=True))
         tables.append(Table(f"Joints in {axis}", [Column("joint"), Column("name"), *springs, error[2]], each))
         text, worst, what = "; ".join(one.faults), int(abs(errors).argmax()), f"{n} links with correct joints"
+        mass = "give the links the mass of the beam, m l^2/12 about l/2"
         size, where = float(abs(errors[worst])), f"at mode {worst + 1} in {axis}"
-        remedy = "set the joints below" if any(changes) else "give the links m l^2/12 about l/2"
+        remedy = "set the joints below" if any(changes) else mass
         if text:
             failure = f"{text}: {per_cent(size)} {where}"
             margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
@@ -216,7 +234,8 @@ def judge_file(
             warnings.append(f"{axis}: errors of the file cancel at mode 1, give links of one length and these joints")
         if any(changes) or not text:
             size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
-            margins.append(Margin(name=what, size=size, where=where, remedy="give more links", **limits))
+            what, remedy = (f"{what}, but {'; '.join(one.links)}", mass) if one.links else (what, "give more links")
+            margins.append(Margin(name=what, size=size, where=where, remedy=remedy, **limits))
         own = one.present.beam
         about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
         about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
