@@ -124,7 +124,7 @@ def test_engines_have_the_frequencies_of_the_chain_in_both_planes_and_torsion(en
         for axis in chain.axes:
             exact, errors = chain.exact_hz(axis, 3), chain.errors(axis, 3)
             nearest = [found[abs(found - f).argmin()] for f in exact * (1 + errors)]
-            assert np.array(nearest) / exact - 1 == pytest.approx(errors, abs=2e-9), (name, axis)
+            assert np.array(nearest) / exact - 1 == pytest.approx(errors, abs=1e-9), (name, axis)
 
 
 @pytest.mark.parametrize("count", COUNTS)

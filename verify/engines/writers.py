@@ -18,7 +18,7 @@ SLIDES: dict[Axis, str] = {"bending": "0 0 1", "width": "0 1 0"}
 COLOURS = "0.18 0.50 0.93 1", "0.95 0.61 0.14 1"
 DEEPEST = 496
 """Largest number of nested bodies that MuJoCo's reader takes."""
-MASSLESS = 1e-10
+MASSLESS = 1e-11
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
 _MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
