@@ -172,13 +172,14 @@ def script(chain: RigidChain, engine: str) -> str:
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
     fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
+    shift = min(float(chain.frequencies_hz(axis, 1)[0]) for axis in chain.axes) ** 2 * 40.0
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
         f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
         "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
         f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
         f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
-        f"SUPPORTED = {fixed}\nTIP = {tip}\n\n{text}"
+        f"SUPPORTED = {fixed}\nTIP = {tip}\n# of omega^2, about the lowest elastic one\nSHIFT = {shift:.3g}\n\n{text}"
     )
 
 
