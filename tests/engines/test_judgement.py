@@ -5,9 +5,10 @@ import re
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
-from verify import Beam
+from verify import Beam, Section, SegmentModel
 from verify.cli import status_of
 from verify.engines.description import RULES, describe
 from verify.engines.judgement import judge_file
@@ -45,8 +46,12 @@ def test_rule_at_the_wall_is_named_and_corrected_to_the_best_chain(tmp_path, wal
         assert mujoco_hz(out)[:5] == pytest.approx(best.frequencies_hz(n_modes=5), rel=1e-9)
 
 
-def test_first_link_fixed_and_its_adapted_joints(tmp_path):
+@pytest.mark.parametrize("frame", [0.0, 0.5, 1.0])
+def test_first_link_fixed_and_its_adapted_joints(tmp_path, frame):
+    """The frame of the first link is at its beginning, its centre, its end."""
     text = re.sub(r'<joint name="joint0_.*?/>', "", mjcf(describe(STEEL, 14, wall="full")))
+    text = re.sub('(?s)("link0" pos=")[^ ]+( .*?<inertial pos=")[^ ]+( .*?"link1" pos=")[^ ]+',
+                  rf"\g<1>{frame / 14}\g<2>{(0.5 - frame) / 14}\g<3>{(1 - frame) / 14}", text)  # fmt: skip
     found, warnings, out = judged(tmp_path, text)
     assert found["faults"] == ["first link fixed at the wall"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((0.0768, 1.04e-3), rel=0.02)
@@ -75,6 +80,12 @@ def test_mass_models_are_named(tmp_path, place, factor, fault):
     assert (found["faults"], found["mass_per_length"]) == ([fault], pytest.approx(2.512))
 
 
+def test_springdamper_overrides_the_stiffness(tmp_path):
+    text = re.sub('stiffness="[^"]*" damping="[^"]*"', 'springdamper="0.02 0.1"', mjcf(describe(STEEL, 3)))
+    with pytest.raises(InputError, match="mj_saveLastXML"):
+        judged(tmp_path, text)
+
+
 def test_default_class_and_tip_mass(tmp_path):
     head = '<default><joint stiffness="5017.6"/></default>\n<worldbody><!-- <joint/> -->'
     text = mjcf(describe(STEEL, 14, wall="full")).replace("<worldbody>", head).replace('inertiafromgeom="false"', "")
@@ -83,6 +94,9 @@ def test_default_class_and_tip_mass(tmp_path):
     found, _, out = judged(tmp_path, text.replace('<site name="tip"', tip))
     assert found["faults"] == ["EI/l at the wall"]
     assert abs(found["corrected_error"][0]) < 2e-6
+    bare = judge_file(out, STEEL)
+    assert bare.data["chains"][0]["faults"] == ["bodies 0.4 kg heavier than those of the beam"]
+    assert [margin.remedy[:14] for margin in bare.margins] == ["give the links"]
     assert out.read_text().count("stiffness=") == 4
 
 
@@ -99,8 +113,87 @@ def test_public_models():
     ]
     # bodies between two hinges at one place have 5 % of the mass and a quarter of the inertia
     assert [[text.split()[0] for text in one["faults"]] for one in tether] == [["EI/l", "inertia", "centre"]] * 2
+    assert "cancel at mode 1" in judge_file(DATA / "hose.xml", None).warnings[0]
     errors = [one["error"][0] for one in (*rod, *hose, *tether)]
     assert errors == pytest.approx([0.3709, -0.0356, -0.1383, -0.1383], abs=1e-4)
+
+
+def chain_text(n, joint, geom, step):
+    """MJCF of n equal bodies along `step`, with gravity."""
+    bodies = "".join(f'<body pos="{step if i else "0 0 0"}">{joint.format(i=i)}{geom}' for i in range(n))
+    return f"<mujoco><worldbody>{bodies}{'</body>' * n}</worldbody></mujoco>"
+
+
+def test_public_whip_of_point_masses_under_gravity(tmp_path):
+    """mosesnah-shared/whip-project-targeting, models/25DOF_whip.xml: a point mass at the far joint of each link."""
+    joint = '<joint name="j{i}" axis="0 -1 0" stiffness="0.242" damping="0.092"/>'
+    geom = '<geom type="sphere" pos="0 0 -0.072" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
+    assert [text.split()[0] for text in found["faults"]] == ["EI/l", "inertia", "centre"]
+    assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
+    weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
+    assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
+    assert judge_file(out, None).margins[0].remedy == "give the links the mass of the beam, m l^2/12 about l/2"
+
+
+@pytest.mark.parametrize(("pose", "angle", "about", "axis"), [
+    ("", "1.5707963267948966", "", "0 1 0"), (' degrees="true"', "90", "", "0 1 0"),
+    ("", "1.5707963267948966", ' expressed_in="__model__"', "0 1 0"), ("", "1.5707963267948966", "", "1 0 0"),
+    ("", "1.5707963267948966", ' expressed_in="__model__"', "0 0 1"),
+])  # fmt: skip
+def test_frames_of_sdf(tmp_path, pose, angle, about, axis):
+    """Links along z of their own frame, which is pitched into x of the model."""
+    text, parent, mass, spin = "", "world", 2.512 / 14, 2.512 / 14**3 / 12
+    for i in range(14):
+        text += f"""<link name="l{i}"><pose{pose}>{i / 14} 0 0 0 {angle} 0</pose><inertial><pose>0 0 {0.5 / 14}</pose>
+            <mass>{mass}</mass><inertia><ixx>{spin}</ixx><iyy>{spin}</iyy><izz>0</izz></inertia></inertial></link>
+            <joint name="j{i}" type="revolute"><parent>{parent}</parent><child>l{i}</child><axis><xyz{about}>{axis}</xyz>
+            <dynamics><spring_stiffness>5017.6</spring_stiffness></dynamics></axis></joint>"""
+        parent = f"l{i}"
+    (tmp_path / "beam.sdf").write_text(f"<sdf><model>{text}</model></sdf>")
+    found = judge_file(tmp_path / "beam.sdf", None).data["chains"][0]
+    assert found["error"] == pytest.approx(describe(STEEL, 14, wall="full").errors(n_modes=5), abs=1e-9)
+
+
+def test_beam_with_a_step_needs_a_scene(tmp_path):
+    path = tmp_path / "beam.sdf"
+    stepped = replace(STEEL, section=(Section(length=0.5), Section(length=0.5, thickness=0.004)))
+    write(describe(stepped, 14, wall="full"), path)
+    with pytest.raises(InputError, match="masses and stiffnesses of the links vary"):
+        judge_file(path, None)
+    found = judge_file(path, stepped).data["chains"][0]
+    assert found["faults"] == ["EI/l at the wall"]
+    assert found["error"] == pytest.approx(describe(stepped, 14, wall="full").errors(n_modes=5), abs=1e-9)
+
+
+def test_half_a_link_fixed_at_the_wall_is_right_as_it_is(tmp_path):
+    """Midpoint rule: joints l/2, 3l/2, ... from the wall with EI/l each, half a link at both ends; order 2."""
+    text, joint = "", '<joint axis="0 1 0" stiffness="5017.6"/>'
+    for i, length in enumerate([0.5 / 14, *[1 / 14] * 13, 0.5 / 14]):
+        at = 0.5 * length
+        text += (
+            f'<body pos="{(0.5 + 0.5 * (i > 1)) / 14 * (i > 0)} 0 0">{joint * (i > 0)}<geom type="box" pos="{at} 0 0" '
+        )
+        text += f'size="{at} .02 .004" density="7850" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, f"<mujoco><worldbody>{text}{'</body>' * 15}</worldbody></mujoco>")
+    assert (found["faults"], len(warnings)) == ([], 1)
+    assert found["rule"] == "fixed link in series with its joint at the wall"
+    assert found["stiffness"] == pytest.approx(358.4, rel=1e-9)
+    welded = SegmentModel(STEEL, 14, wall="welded").modes(2).frequencies_hz
+    assert found["frequencies_hz"][:2] == pytest.approx(welded, rel=2e-4)  # geoms have rotary inertia
+    assert out.read_bytes() == (tmp_path / "beam.xml").read_bytes()
+
+
+def test_ball_joints_and_the_modulus_of_round_links_are_named(tmp_path):
+    joint = '<joint type="ball" stiffness="2333.3333"/>'
+    geom = '<geom type="cylinder" fromto="0 0 0 .025 0 0" size=".005" density="2700" contype="0" conaffinity="0"/>'
+    found, warnings, out = judged(tmp_path, chain_text(20, joint, geom, ".025 0 0"))
+    assert found["faults"] == ["EI/l at the wall"]
+    assert "a ball joint is read as three hinges" in warnings[0]
+    assert "E = 118.8 GPa, or 70 GPa if it is a square section's" in warnings[1]
+    again = judge_file(out, None)
+    assert again.data["passed"]
+    assert [one["rule"] for one in again.data["chains"]] == ["Gregory's weights at the wall"] * 2
 
 
 HINGE = (
@@ -133,6 +226,11 @@ def test_what_is_no_chain_is_one_sentence(tmp_path, body, sentence, capsys):
 
 def test_command_and_files_without_springs(tmp_path, capsys):
     path = tmp_path / "beam.urdf"
+    assert status_of(["export", "--beam", PHRASE, "--count", "14", "--to", str(path)]) == 0
+    assert status_of(["compare", str(path), str(path)]) == 2
+    assert "give one file" in capsys.readouterr().err
+    assert status_of(["compare", str(path), "--corrected", str(tmp_path / "out.xml")]) == 2
+    assert "the format stays" in capsys.readouterr().err
     write(describe(STEEL, 14, wall="half"), path)
     assert status_of(["compare", "--beam", PHRASE, str(path), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["chains"][0]["rule"] == "2EI/l at the wall"

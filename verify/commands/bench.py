@@ -14,14 +14,9 @@ from verify.commands.shared import BeamCommand, charts_option, format_options, p
 @charts_option
 @format_options
 def bench(
-    sets: tuple[str, ...],
-    scene: str | None,
-    mode: int | None,
-    sizes: str | None,
-    seconds: float,
-    charts: str | None,
+    sets: tuple[str, ...], scene: str | None, mode: int | None, sizes: str | None, seconds: float, charts: str | None,
     **formats: bool,
-) -> None:
+) -> None:  # fmt: skip
     """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
     Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --sizes 49,98`

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from verify.problem.beam import Beam
     from verify.report.result import Result, Table
 
+CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
+"""Suffixes of chains of rigid bodies that `verify compare` judges."""
 FIRST = 4
 """Joints that the terminal always shows."""
 COMPARED = "gregory", "half", "full", "rigid"
@@ -31,17 +33,9 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
-    scene: str,
-    overrides: tuple[str, ...],
-    count: int | None,
-    mode: int,
-    error: str,
-    wall: str,
-    in_space: bool,
-    damping: str,
-    path: str | None,
-    **formats: bool,
-) -> None:
+    scene: str, overrides: tuple[str, ...], count: int | None, mode: int, error: str, wall: str, in_space: bool,
+    damping: str, path: str | None, **formats: bool,
+) -> None:  # fmt: skip
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
 
     Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
@@ -56,7 +50,7 @@ def chain(
 
     ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
     if count is None:
-        count = _fewest(beam, mode, relative_error(error), wall, in_space)
+        count = fewest(beam, mode, relative_error(error), wall, in_space)
     described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
     result = _result(described, mode, brief=brief)
     wrote = write(described, Path(path)) if path else ""
@@ -76,11 +70,13 @@ def judge_chain(
     from verify.engines.judgement import judge_file
     from verify.scene.load import load_scene
 
-    if len(words) > 2:
-        raise InputError(f"{words[-1]}: give one file, with one scene in front of it or none")
-    beam = load_scene(words[0], overrides).beam if len(words) > 1 else None
+    files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]
+    others = [word for word in words if Path(word) not in files]
+    if len(files) > 1 or len(others) > 1:
+        raise InputError(f"{' '.join(words)}: give one file, with one scene or none")
+    beam = load_scene(others[0], overrides).beam if others else None
     out = Path(corrected) if corrected else None
-    result = judge_file(Path(words[-1]), beam, modes, relative_error(within), theory, out)
+    result = judge_file(files[0], beam, modes, relative_error(within), theory, out)
     if not any(formats.values()):
         result = replace(result, tables=[result.tables[0], *map(_shortened, result.tables[1:])])
     show(result, **formats)
@@ -88,7 +84,7 @@ def judge_chain(
         raise SystemExit(GATE_FAILED)
 
 
-def _fewest(beam: "Beam", mode: int, error: float, wall: str, in_space: bool) -> int:
+def fewest(beam: "Beam", mode: int, error: float, wall: str = "gregory", in_space: bool = False) -> int:
     """The smallest number of links that is within the error at a mode, and so is the next one tried."""
     from verify.engines.description import MOST_LINKS, describe
 

@@ -5,15 +5,13 @@ from pathlib import Path
 import click
 
 from verify.commands import shared
-from verify.commands.chain import judge_chain
+from verify.commands.chain import CHAINS, judge_chain
 from verify.options import THEORIES
 
 UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
 """As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 """Suffixes of lists of frequencies; other files are meshes."""
-CHAINS = {".xml", ".mjcf", ".sdf", ".urdf"}
-"""Suffixes of chains of rigid bodies, with a scene in front or without."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -68,8 +66,8 @@ def compare(
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
-    if Path([scene, *given][-1]).suffix.lower() in CHAINS:
-        return judge_chain([scene, *given], overrides, mode or 5, within, theory, corrected, formats)
+    if any(Path(word).suffix.lower() in CHAINS for word in (scene, *given)):
+        return judge_chain([scene, *given], overrides, mode or 3, within, theory, corrected, formats)
     if bool(given) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = typed(within, Relative, "within")

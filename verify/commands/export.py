@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from verify.commands.chain import CHAINS, fewest
 from verify.commands.shared import BeamCommand, overrides_option, progress, scene_argument
 from verify.errors import printable
 
@@ -15,34 +16,33 @@ from verify.errors import printable
 @click.option("--to", "path", required=True, metavar="FILE", help="The suffix is the file type.")
 @click.option("--model", default="segment", show_default=True, metavar="NAME", help="segment, fem or analytic.")
 @click.option(
-    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements. Default: the scene's; within 1 %."
+    "--count", type=click.IntRange(1), metavar="N", help="Segments or elements. Default: the scene's; within 1 %."
 )
-@click.option(
-    "--mode", type=click.IntRange(min=1), metavar="N", help="The mode of a picture, the number of modes of data."
-)
-@click.option("--samples", type=click.IntRange(min=2), metavar="N", help="Instants of a period or of a motion.")
+@click.option("--mode", type=click.IntRange(1), metavar="N", help="The mode of a picture, the number of modes of data.")
+@click.option("--samples", type=click.IntRange(2), metavar="N", help="Instants of a period or of a motion.")
 def export(
-    scene: str,
-    overrides: tuple[str, ...],
-    what: str | None,
-    path: str,
-    model: str,
-    count: int | None,
-    mode: int | None,
-    samples: int | None,
-) -> None:
+    scene: str, overrides: tuple[str, ...], what: str | None, path: str, model: str, count: int | None,
+    mode: int | None, samples: int | None,
+) -> None:  # fmt: skip
     """Write modes, the driven wave or the motion of SCENE to FILE.
 
     vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures. The chart of
-    convergence is written as png or svg.
+    convergence is written as png or svg. A chain of rigid bodies: xml (MJCF), sdf, urdf, _exudyn.py, _pinocchio.py, in
+    a plane; `verify chain` has its options.
     Example: `verify export paper --what modes --to modes.vtu`
     """
     from verify.io.data import Request
     from verify.io.export import write
     from verify.scene.load import load_scene
 
-    request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     loaded = load_scene(scene, overrides)
+    if path.lower().endswith((*CHAINS, ".py")):
+        from verify.engines.description import describe
+        from verify.engines.writers import write as write_chain
+
+        described = describe(loaded.beam, count or fewest(loaded.beam, mode or 3, 0.01))
+        return click.echo(printable(write_chain(described, Path(path))))
+    request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
         summary = write(loaded, Path(path), request, step)
     click.echo(printable(f"wrote {path}: {summary}"))

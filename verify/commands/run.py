@@ -1,5 +1,6 @@
 """`verify run`: gates and studies of one or several scenes, with reports."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
@@ -30,7 +31,7 @@ class Task(NamedTuple):
 @click.option("--to", "folder", default="reports", show_default=True, metavar="FOLDER", help="Folder of the reports.")
 @click.option("--no-report", is_flag=True, help="Write no files.")
 @click.option(
-    "--keep", type=click.IntRange(min=0), default=5, show_default=True, metavar="N", help="Saved runs of a scene."
+    "--keep", type=click.IntRange(0), default=5, show_default=True, metavar="N", help="Saved runs of a scene."
 )
 @json_option
 def run(
@@ -59,19 +60,16 @@ def run(
 
 
 def _run_one(task: Task, as_json: bool) -> None:
-    from verify.report.archive import report_name, save_run
     from verify.report.summary import run_data
     from verify.report.terminal import print_run
     from verify.scene.load import load_scene
-    from verify.scene.run import plan, run_scene
+    from verify.scene.run import plan
     from verify.studies.base import studies_of
 
     scene = load_scene(task.scene, task.overrides)
     steps = sum(row.runs for row in plan(scene, task.overrides)) + sum(study.steps for _, study in studies_of(scene))
     with progress(steps, quiet=as_json) as step:
-        result = run_scene(task.scene, step, task.overrides)
-        name = report_name(result.scene.name, task.overrides)
-        saved = save_run(result, task.reports, name, task.command, task.keep) if task.reports else None
+        result, _, saved = _saved(task, step)
     if as_json:
         print_json(run_data(result, task.command) | {"page": str(saved.page) if saved else None})
     else:
@@ -133,17 +131,22 @@ def _turns(tasks: list[Task]) -> list[int]:
 def _line_of(task: Task) -> dict[str, Any]:
     """The line of one scene in the index; the work of one process."""
     from verify.errors import InputError
-    from verify.report.archive import report_name, save_run
     from verify.report.index import failed_line, scene_line
-    from verify.scene.run import run_scene
 
     try:
-        result = run_scene(task.scene, overrides=task.overrides)
-        name = report_name(result.scene.name, task.overrides)
-        saved = save_run(result, task.reports, name, task.command, task.keep) if task.reports else None
+        return scene_line(*_saved(task))
     except InputError as error:
         return failed_line(task.scene, error.sentences)
-    return scene_line(result, name, saved)
+
+
+def _saved(task: Task, step: Callable[[str], None] = lambda step: None) -> tuple[Any, str, Any]:
+    """(result, name of the report, saved run) of a scene; None where no report is written."""
+    from verify.report.archive import report_name, save_run
+    from verify.scene.run import run_scene
+
+    result = run_scene(task.scene, step, task.overrides)
+    name = report_name(result.scene.name, task.overrides)
+    return result, name, save_run(result, task.reports, name, task.command, task.keep) if task.reports else None
 
 
 def _command_line(scenes: tuple[str, ...], overrides: tuple[str, ...]) -> str:

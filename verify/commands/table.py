@@ -23,13 +23,9 @@ def table(
 
 
 def run_study(
-    scene: str,
-    name: str,
-    options: tuple[str, ...],
-    overrides: tuple[str, ...],
-    charts: str | None,
+    scene: str, name: str, options: tuple[str, ...], overrides: tuple[str, ...], charts: str | None,
     formats: dict[str, bool],
-) -> None:
+) -> None:  # fmt: skip
     """Run a study with the scene's section, or its defaults, and 'key=value' options, and show its result."""
     from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert

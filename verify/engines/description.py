@@ -13,7 +13,7 @@ wavenumber k.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
 from typing import Any, Literal
@@ -75,7 +75,7 @@ class Spring(msgspec.Struct, frozen=True):
     link: int
     rotational: bool
     stiffness: float
-    damping: float
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,70 +224,74 @@ def describe(
         beam = beam.mirrored()
     turning = [mass.position for mass in beam.mass if mass.rotary_inertia]
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
-    behind = [one for one in beam.spring if one.position in (0.0, beam.length) and one.position not in turning]
-    behind = [PointSpring(position=one.position, rotational=one.rotational) for one in behind if one.rotational]
-    bare = msgspec.structs.replace(beam, mass=(), spring=tuple(behind))
-    rule: Any = "full" if wall == "rigid" else wall
-    models = {a: SegmentModel(in_plane(bare, a), count, wall=rule) for a in (AXES[:2] if in_space else AXES[:1])}
+    behind = [one for one in beam.spring if one.rotational and one.position in {0.0, beam.length} - {*turning}]
+    series = tuple(PointSpring(position=one.position, rotational=one.rotational) for one in behind)
+    bare, rule = msgspec.structs.replace(beam, mass=(), spring=series), "full" if wall == "rigid" else wall
+    models = {a: SegmentModel(in_plane(bare, a), count, wall=rule) for a in AXES[: 1 + in_space]}  # type: ignore[arg-type]
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
-    lengths = parts.lengths * unit
-    springs: dict[Axis, Array] = {
-        axis: one.beam.bending_stiffness / unit / one.chain.compliances for axis, one in models.items()
-    }
-    masses = parts.lengths * parts.masses_per_length * beam.mass_per_length * unit
-    inertias = np.stack([masses * lengths**2 / 12.0] * 3, axis=1)
+    springs = {axis: one.beam.bending_stiffness / unit / one.chain.compliances for axis, one in models.items()}
+    lengths, sections = parts.lengths * unit, np.zeros((count, 3))
+    masses = lengths * parts.masses_per_length * beam.mass_per_length
     bodies = [
         (link, m.position - chain.nodes[link], share * m.mass, share * m.rotary_inertia)
         for m in beam.mass
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
-        shaft = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0)
-        spin, moment = shaft[:, 1] * lengths, np.zeros(count)
-        for link, x, _, inertia in bodies:
-            spin[link] += inertia
-            moment[link] += inertia * (x - 0.5 * lengths[link])
-        # a disk is at the centre of its inertia: order 1 otherwise
-        before, after = (0.5 * lengths + moment / spin) / shaft[:, 0], (0.5 * lengths - moment / spin) / shaft[:, 0]
-        before[0] = before[0] if beam.supports[0] != "free" else np.inf
-        after[-1] = after[-1] if beam.supports[1] != "free" else np.inf
-        springs["torsion"] = 1.0 / (np.append(before, 0.0) + np.append(0.0, after))
-        sections = [shaft[:, 1], *(one.links.of("rotary_inertia") for one in models.values())]
-        inertias = inertias * [0.0, 1.0, 1.0] + np.stack(sections, axis=1) * lengths[:, None]
+        twist, spin = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0).T
+        sections = np.stack([spin, *(one.links.of("rotary_inertia") for one in models.values())], axis=1)
+        springs["torsion"] = _torsion_springs(lengths, twist, spin * lengths, bodies, beam.supports)
+    inertias = np.outer(masses * lengths**2 / 12.0, [not in_space, 1.0, 1.0]) + sections * lengths[:, None]
     centres = 0.5 * lengths
     for link, x, mass, inertia in bodies:
         share, apart = mass / (masses[link] + mass), x - centres[link]
         inertias[link] += inertia + share * masses[link] * apart**2 * np.array([0.0, 1.0, 1.0])
         centres[link] += share * apart
         masses[link] += mass
-    times = dict.fromkeys(springs, 0.0)
-    if damping:
-        undamped = describe(beam, count, wall=wall, in_space=in_space)
-        times = {axis: damping / (pi * float(undamped.frequencies_hz(axis, 1)[0])) for axis in springs}
     fixed = [end for end, s in zip((0, count), beam.supports, strict=True) if s == "clamped" and wall == "rigid"]
-    nodes, across = chain.nodes.tolist(), times["bending"]
-    links = zip(nodes, *(one.tolist() for one in (lengths, masses, centres, inertias)), strict=False)
-    hinges = [
-        tuple(Hinge(a, float(k[j]), times[a] * float(k[j])) for a, k in springs.items()) for j in range(count + 1)
-    ]
-    return RigidChain(
-        beam=beam,
-        wall=wall,
-        joints=tuple(Joint(x, () if j in fixed else hinges[j]) for j, x in enumerate(nodes)),
-        links=tuple(Link(x, length, mass, centre, tuple(inertia)) for x, length, mass, centre, inertia in links),
-        springs=tuple(
-            Spring(one.position, link, rotational, share * k, across * share * k)
-            for one in beam.spring
-            for turning in [0.0 if any(one.position == b.position for b in behind) else one.rotational]
-            for link, share in _shares(chain, one.position, turning)
-            for rotational, k in ((False, one.stiffness), (True, turning))
-            if k
-        ),
-        damping=damping,
-        in_space=in_space,
-        mirrored=mirrored,
-        theory="rayleigh" if in_space else "euler-bernoulli",
+    nodes, values = chain.nodes.tolist(), {axis: one.tolist() for axis, one in springs.items()}
+    hinges = [() if j in fixed else tuple(Hinge(a, k[j]) for a, k in values.items()) for j in range(count + 1)]
+    links = zip(
+        nodes, *(one.tolist() for one in (lengths, masses, centres)), map(tuple, inertias.tolist()), strict=False
     )
+    ground = tuple(
+        Spring(one.position, link, rotational, share * k)
+        for one in beam.spring
+        for turning in [0.0 if any(one.position == b.position for b in behind) else one.rotational]
+        for link, share in _shares(chain, one.position, turning)
+        for rotational, k in ((False, one.stiffness), (True, turning))
+        if k
+    )
+    theory: Theory = "rayleigh" if in_space else "euler-bernoulli"
+    joints = tuple(map(Joint, nodes, hinges))
+    made = RigidChain(beam, wall, joints, tuple(Link(*one) for one in links), ground, 0.0, in_space, mirrored, theory)
+    return _damped(made, damping) if damping else made
+
+
+def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: tuple[str, str]) -> Array:
+    """Joints in torsion, (N + 1,), N m/rad, of links with GJ `twist` (N m^2) and polar inertia `spin` (kg m^2).
+
+    A disk is at the centre of the inertia of its link and of the bodies on it: order 1 otherwise.
+    """
+    spin, moment = spin.copy(), np.zeros(len(spin))
+    for link, x, _, inertia in bodies:
+        spin[link] += inertia
+        moment[link] += inertia * (x - 0.5 * lengths[link])
+    before, after = ((0.5 * lengths + sign * moment / spin) / twist for sign in (1.0, -1.0))
+    before[0] = before[0] if supports[0] != "free" else np.inf
+    after[-1] = after[-1] if supports[1] != "free" else np.inf
+    return np.asarray(1.0 / (np.append(before, 0.0) + np.append(0.0, after)))
+
+
+def _damped(chain: RigidChain, ratio: float) -> RigidChain:
+    """The chain with dashpots in proportion to its springs, by which the first mode about each axis has the ratio."""
+    times = {axis: ratio / (pi * float(chain.frequencies_hz(axis, 1)[0])) for axis in chain.axes}
+
+    def damped(one: Any, axis: Axis) -> Any:
+        return msgspec.structs.replace(one, damping=times[axis] * one.stiffness)
+
+    joints = tuple(Joint(one.position, tuple(damped(h, h.axis) for h in one.hinges)) for one in chain.joints)
+    return replace(chain, joints=joints, springs=tuple(damped(one, "bending") for one in chain.springs), damping=ratio)
 
 
 def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, float]]:

@@ -35,16 +35,9 @@ class Exudyn:
 
         system, bodies = assemble(chain)
         middle, at = chain.locate(0.5 * chain.rigid.beam.length)
-        position, place = exu.OutputVariableType.Position, [at - chain.rigid.links[0].centre, 0.0, 0.0]
-        sensor = system.AddSensor(
-            items.SensorBody(
-                bodyNumber=bodies[middle],
-                localPosition=place,
-                outputVariableType=position,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
+        position = {"outputVariableType": exu.OutputVariableType.Position, "storeInternal": True, "writeToFile": False}
+        place = [at - chain.rigid.links[0].centre, 0.0, 0.0]
+        sensor = system.AddSensor(items.SensorBody(bodyNumber=bodies[middle], localPosition=place, **position))
         system.Assemble()
         settings = exu.SimulationSettings()
         settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = steps, end
@@ -101,7 +94,6 @@ def assemble(chain: Chain) -> tuple[Any, list[int]]:
         def load(_: object, t: float, __: object, k: int = k) -> list[float]:
             return [0.0, chain.force_values(t)[k], 0.0]
 
-        marker = point(bodies[link], at - half)
-        vector = items.LoadForceVector(markerNumber=marker, loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=load)
-        system.AddLoad(vector)
+        at_force = {"markerNumber": point(bodies[link], at - half), "loadVectorUserFunction": load}
+        system.AddLoad(items.LoadForceVector(loadVector=[0.0, 1.0, 0.0], **at_force))
     return system, bodies

@@ -15,13 +15,18 @@ from verify.arrays import Array
 from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
 
-SLIDE = "a slide or a free base"
+SLIDE = "is a slide or a free base"
+ROUND = (3, 5)
+"""Types of geoms of MuJoCo: capsule, cylinder."""
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
 
 
 class Move(NamedTuple):
-    """A hinge at a place, m, about an axis in the world; `bound`: what it has besides, or a slide in its place."""
+    """A hinge at a place, m, about an axis in the world; `bound`: what acts on it besides its spring.
+
+    A ball joint is three hinges of one name and stiffness.
+    """
 
     joint: str
     at: Array
@@ -31,7 +36,10 @@ class Move(NamedTuple):
 
 
 class Solid(NamedTuple):
-    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3)."""
+    """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
+
+    `radius`: of the cylinder or capsule that is drawn for it, m, else 0.
+    """
 
     name: str
     parent: int
@@ -40,6 +48,7 @@ class Solid(NamedTuple):
     centre: Array
     inertia: Array
     moves: tuple[Move, ...]
+    radius: float = 0.0
 
 
 class Line(NamedTuple):
@@ -56,17 +65,21 @@ class Line(NamedTuple):
     solid: bool
 
 
-def read(path: Path) -> tuple[str, list[Solid]]:
-    """(root element: mujoco, sdf or robot; bodies, each after its parent). Raises InputError."""
+def read(path: Path) -> tuple[str, list[Solid], Array]:
+    """(root element: mujoco, sdf or robot; bodies, each after its parent; gravity, m/s^2). Raises InputError.
+
+    Gravity of SDF and URDF is that of an empty world.
+    """
+    earth = np.array([0.0, 0.0, -9.81])
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
-            return root.tag, _mjcf(path)
+            return root.tag, *_mjcf(path)
         if root.tag == "sdf":
-            return root.tag, _xml(next(root.iter("model")), path.name, None)
+            return root.tag, _xml(next(root.iter("model")), path.name, None), earth
         if root.tag == "robot":
             springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
-            return root.tag, _xml(root, path.name, springs)
+            return root.tag, _xml(root, path.name, springs), earth
     except InputError:
         raise
     except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
@@ -74,8 +87,8 @@ def read(path: Path) -> tuple[str, list[Solid]]:
     raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
 
 
-def _mjcf(path: Path) -> list[Solid]:
-    """The bodies at the angles where the springs have no moment; a ball is three hinges, as for small motion."""
+def _mjcf(path: Path) -> tuple[list[Solid], Array]:
+    """The bodies at the angles where the springs have no moment, and gravity."""
     try:
         import mujoco
     except ImportError:
@@ -86,15 +99,15 @@ def _mjcf(path: Path) -> list[Solid]:
     data.qpos[:] = model.qpos_spring
     mujoco.mj_forward(model, data)
     springs = np.reshape(model.jnt_stiffness, (model.njnt, -1))
-    bound = {int(dof): "an armature" for dof in np.flatnonzero(model.dof_armature)}
-    kinds = ("an equality", "dry friction", "dry friction", "a limit", "a limit", *["a contact"] * 9)
+    bound = {int(dof): "has an armature" for dof in np.flatnonzero(model.dof_armature)}
+    kinds = ("has an equality", *["has dry friction"] * 2, *["is at a limit"] * 2, *["has a contact"] * 9)
     for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
         bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
     for at, n, spring in zip(model.tendon_adr, model.tendon_num, model.tendon_stiffness, strict=True):
-        bound |= {int(model.jnt_dofadr[i]): "a tendon" for i in model.wrap_objid[at : at + n] if np.any(spring)}
+        bound |= {int(model.jnt_dofadr[i]): "has a tendon" for i in model.wrap_objid[at : at + n] if np.any(spring)}
     for i, bias in enumerate(model.actuator_biasprm):
         if bias[1] and model.actuator_trntype[i] == 0:
-            bound[int(model.jnt_dofadr[model.actuator_trnid[i, 0]])] = "an actuator with a stiffness"
+            bound[int(model.jnt_dofadr[model.actuator_trnid[i, 0]])] = "has an actuator with a stiffness"
 
     def moves(body: int) -> Iterator[Move]:
         for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
@@ -109,8 +122,11 @@ def _mjcf(path: Path) -> list[Solid]:
         inertia = (own * model.body_inertia[b]) @ own.T
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        solids.append(Solid(name, up, place, mass, data.xipos[b].copy(), inertia, tuple(moves(b))))
-    return solids
+        drawn = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
+        radii = [float(model.geom_size[i, 0]) for i in drawn if model.geom_type[i] in ROUND]
+        own_moves, radius, centre = tuple(moves(b)), max(radii, default=0.0), data.xipos[b].copy()
+        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius))
+    return solids, np.array(model.opt.gravity)
 
 
 def _value(one: ElementTree.Element | None, path: str) -> str:
@@ -123,10 +139,12 @@ def _value(one: ElementTree.Element | None, path: str) -> str:
 def _pose(one: ElementTree.Element | None) -> Array:
     """The transformation (4, 4) of an element's origin (URDF) or pose (SDF): x y z, roll pitch yaw."""
     words = _value(one, "pose") or f"{_value(one, 'origin/xyz') or '0 0 0'} {_value(one, 'origin/rpy')}"
+    if len(words.split()) > 6:
+        raise ValueError("a pose by a quaternion, give roll, pitch and yaw")
     x, y, z, roll, pitch, yaw = [*map(float, words.split()), 0.0, 0.0, 0.0][:6]
-    pose = np.eye(4)
+    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, "pose/degrees") == "true" else 1.0
     for angle, i, k in ((yaw, 0, 1), (pitch, 2, 0), (roll, 1, 2)):
-        turn, c, s = np.eye(4), np.cos(angle), np.sin(angle)
+        turn, c, s = np.eye(4), np.cos(unit * angle), np.sin(unit * angle)
         turn[[i, k, i, k], [i, k, k, i]] = c, c, -s, s
         pose = pose @ turn
     pose[:3, 3] = x, y, z
@@ -166,14 +184,17 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
             if not mass:
                 raise InputError(f"{name}: link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
             axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
-            about = turn[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
+            old = "__model__" * (_value(axis, "use_parent_model_frame") in ("1", "true"))
+            frame = place(_value(axis, "xyz/expressed_in") or old or joint)
+            about = frame[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
             own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
             moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
         centre = at @ _pose(inertial)
         six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
         inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
         up = order.index(parent) if parent in order else -1
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves)))
+        radii = [float(_value(shape, "radius") or 0.0) for kind in ("cylinder", "capsule") for shape in one.iter(kind)]
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), max(radii, default=0.0)))
     return solids
 
 
@@ -200,17 +221,18 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
     if other := set(sprung) - set(chain):
         raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
     for move in (move for i in chain for move in solids[i].moves if move.bound):
-        raise InputError(f"{name}: joint {shown(move.joint)} has {move.bound}, give a wall, hinges and springs alone")
+        raise InputError(f"{name}: joint {shown(move.joint)} {move.bound}: take it out, hinges and springs are judged")
     parts = list[tuple[list[Move], list[Solid]]]()
     for i in chain:
         own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
         before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
         parts.append((before[0] + own, members + before[1]))
     if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
-        ahead, first = (parts[i][0][-1].at for i in (1, 0))
-        reach, step = (np.linalg.norm(one) for one in (first - solids[base].origin, ahead - first))
-        if reach and abs(solids[base].mass / reach / (parts[0][1][0].mass / step) - 1.0) < 0.05:
-            parts.insert(0, ([], [solids[base]]))
+        ahead, first, held = parts[1][0][-1].at, parts[0][0][-1].at, solids[base]
+        density = parts[0][1][0].mass / np.linalg.norm(ahead - first)
+        for start in (held.origin, 2.0 * held.centre - first):  # the frame of a link may be at its centre
+            if abs(held.mass - density * (reach := np.linalg.norm(first - start))) < 0.05 * density * reach:
+                return [([], [held._replace(origin=start)]), *parts]
     return parts
 
 
@@ -243,7 +265,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) != 1 or not moves[0].stiffness:
-                raise InputError(f"{name}: {shown(mains[j].name)} has no hinge with a stiffness for {axis}")
+                text = f"has no hinge with a stiffness for {axis}: a chain begins at a wall"
+                raise InputError(f"{name}: {shown(mains[j].name)} {text}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]

@@ -18,7 +18,7 @@ SLIDES: dict[Axis, str] = {"bending": "0 0 1", "width": "0 1 0"}
 COLOURS = "0.18 0.50 0.93 1", "0.95 0.61 0.14 1"
 DEEPEST = 496
 """Largest number of nested bodies that MuJoCo's reader takes."""
-MASSLESS = 1e-10
+MASSLESS = 1e-11
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
 MODES = 3
 _MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
@@ -172,13 +172,14 @@ def script(chain: RigidChain, engine: str) -> str:
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
     fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
+    shift = min(float(chain.frequencies_hz(axis, 1)[0]) for axis in chain.axes) ** 2 * 40.0
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
         f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
         "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
         f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
         f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
-        f"SUPPORTED = {fixed}\nTIP = {tip}\n\n{text}"
+        f"SUPPORTED = {fixed}\nTIP = {tip}\n# of omega^2, about the lowest elastic one\nSHIFT = {shift:.3g}\n\n{text}"
     )
 
 
@@ -215,6 +216,7 @@ def data(chain: RigidChain) -> dict[str, object]:
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
     ".xml": mjcf,
+    ".mjcf": mjcf,
     ".sdf": lambda chain: robot(chain, _SDF),
     ".urdf": lambda chain: robot(chain, _URDF),
     "_exudyn.py": lambda chain: script(chain, "exudyn"),
@@ -227,7 +229,7 @@ _WRITERS: dict[str, Callable[[RigidChain], str]] = {
 def write(chain: RigidChain, path: Path) -> str:
     """Write a chain to a file by the end of its name, whole or not at all; returns a sentence on what was written.
 
-    .xml is MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
+    .xml and .mjcf are MJCF. The stiffnesses of a URDF are also in a JSON file next to it. Raises InputError.
     """
     kind = next((end for end in _WRITERS if path.name.lower().endswith(end)), None)
     if kind is None:
