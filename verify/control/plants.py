@@ -1,0 +1,219 @@
+"""Plants of the controllers: a motor averaged over the drive period, motor and beam in full, and one resonance.
+
+A plant is a frozen value; `advance` maps a state and a command, constant over a tick, to the state after it.
+"""
+
+from collections.abc import Callable
+from math import copysign, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
+
+from verify.arrays import Array, ComplexArray
+from verify.dynamics.result import Motion
+from verify.dynamics.simulate import simulate
+from verify.errors import InputError
+from verify.linear.field import phasor, point_force
+from verify.motor.steady_state import MotorCase, crest_speed, steady_state
+from verify.problem.beam import PointForce
+
+Force = Callable[[float, float], tuple[float, float, float]]
+"""(speed, m/s, constant command) -> (mean force along +x, N, its derivatives by speed and by command)."""
+REACH = 1.5
+"""Largest speed of a force-speed map over the crest speed."""
+MOST_PERIODS = 400
+"""Drive periods until the mean force converges."""
+SUBSTEPS = 4
+"""Steps of the averaged motor in a tick, each with a linear force."""
+
+
+def commanded(case: MotorCase, command: float, kind: str) -> MotorCase:
+    """The motor under a command: a factor of all amplitudes, or the phase of the last force, degrees."""
+    forces = case.forces
+    if kind == "phase":
+        return replace(case, forces=(*forces[:-1], replace(forces[-1], phase_deg=command)))
+    return replace(case, forces=tuple(replace(one, amplitude=command * one.amplitude) for one in forces))
+
+
+class AveragedMotor(Struct, frozen=True, kw_only=True):
+    """m dv/dt = F(v, y), dy/dt = (u - y)/tau_e: the wave follows the command u with the envelope's time constant.
+
+    A tick is exact for a force linear in v and y, otherwise of order 2 in a quarter of it (exponential Euler method of
+    Rosenbrock type: M. Hochbruck and A. Ostermann, Acta Numerica 19:209, 2010). State: position, speed, envelope.
+    """
+
+    mass: float
+    """kg."""
+    force: Force
+    time_constant: float
+    """tau_e = 2Q/omega, s."""
+
+    def start(self, speed: float, command: float) -> Array:
+        """The state in equilibrium."""
+        return np.array([0.0, speed, command])
+
+    def advance(self, state: Array, command: float, seconds: float) -> Array:
+        """The state after `seconds` under a constant command."""
+        from scipy.linalg import expm
+
+        rates = np.zeros((4, 4))
+        rates[0, 1], rates[2, 2:] = 1.0, np.array([-1.0, command]) / self.time_constant
+        for _ in range(SUBSTEPS):
+            _, v, y = state.tolist()
+            force, by_speed, by_envelope = self.force(v, y)
+            rest = force - by_speed * v - by_envelope * y
+            rates[1, 1:] = np.array([by_speed, by_envelope, rest]) / self.mass
+            state = np.asarray((expm(rates * (seconds / SUBSTEPS)) @ [*state, 1.0])[:3])
+        return state
+
+    def read(self, state: Array) -> tuple[float, float]:
+        """(position, speed)."""
+        return float(state[0]), float(state[1])
+
+    def command_at(self, speed: float, lower: float, upper: float) -> float:
+        """The steady command at a speed, m/s: the nearer limit where none within the limits has it."""
+        from scipy.optimize import brentq
+
+        net = [self.force(speed, limit)[0] for limit in (lower, upper)]
+        if net[0] * net[1] >= 0.0:
+            return lower if abs(net[0]) <= abs(net[1]) else upper
+        return float(brentq(lambda y: self.force(speed, y)[0], lower, upper, xtol=1e-12 * (upper - lower)))
+
+    def linearised(self, speed: float, command: float) -> "tuple[AveragedMotor, float, float]":
+        """(linear motor, gain dv/du of the steady state, time constant m/|dF/dv|, s) about a speed and a command.
+
+        Raises InputError where the force does not fall with the speed, or does not depend on the command.
+        """
+        net, by_speed, by_command = self.force(speed, command)
+        if by_speed >= 0.0 or by_command == 0.0 or abs(net) > 1e-6 * abs(by_command * command):
+            raise InputError(f"target = {speed!r} m/s: no command within its limits holds this speed, lower it")
+
+        def force(v: float, y: float) -> tuple[float, float, float]:
+            return by_speed * (v - speed) + by_command * (y - command), by_speed, by_command
+
+        return replace(self, force=force), -by_command / by_speed, -self.mass / by_speed
+
+
+def force_map(case: MotorCase, lower: float, upper: float, kind: Commanded, speeds: int, commands: int) -> Force:
+    """Bicubic spline of the mean friction force over `speeds` x `commands` prescribed speeds and constant commands.
+
+    Speeds reach 1.5 times the crest speed; beyond, the force is constant. Raises InputError for zero amplitude.
+    """
+    from scipy.interpolate import RectBivariateSpline
+
+    if kind == "amplitude" and lower <= 0.0:
+        raise InputError(f"saturation = {[lower, upper]}: the force at zero amplitude is a step, give a lower limit")
+    scaled = kind == "amplitude"
+    top = REACH * crest_speed(case if scaled else commanded(case, 90.0, kind))
+    grid, ratios = np.linspace(lower, upper, commands), np.linspace(-1.0, 1.0, speeds)
+    table = np.empty((commands, speeds))
+    for i, command in enumerate(grid.tolist()):
+        own = commanded(case, command, kind)
+        for j, v in enumerate((top * (command if scaled else 1.0) * ratios).tolist()):
+            if case.slider.contact is None:
+                table[i, j] = own.run(1.0, 2, None, v).mean_friction
+            else:
+                table[i, j] = steady_state(own, v, MOST_PERIODS).means.force
+    table += case.slider.external_force
+    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, commands - 1), ky=min(3, speeds - 1))
+
+    def force(v: float, y: float) -> tuple[float, float, float]:
+        at = min(max(y, lower), upper)
+        scale = top * (at if scaled else 1.0)
+        ratio = v / scale if abs(v) <= scale else copysign(1.0, v)
+        value, by_command, by_ratio = (float(spline.ev(at, ratio, *order)) for order in ((0, 0), (1, 0), (0, 1)))
+        by_ratio *= abs(v) <= scale
+        by_command -= by_ratio * ratio / at if scaled else 0.0
+        return value, by_ratio / scale, by_command * (y == at)
+
+    return force
+
+
+class FullMotor(Struct, frozen=True, kw_only=True):
+    """Beam and slider in time: every tick continues the run with other amplitudes or phases of the forces."""
+
+    case: MotorCase
+    """With start = 'rest': the field grows and decays by its modes."""
+    kind: str = "amplitude"
+    settling: float = 0.0
+    """Time at the initial speed and command before the first tick, s."""
+
+    def start(self, speed: float, command: float) -> Motion:
+        """The run at a prescribed speed and a fixed position up to the first tick."""
+        return self._run(None, command, max(self.settling, 2.0 * self.case.period), speed)
+
+    def advance(self, state: Motion, command: float, seconds: float) -> Motion:
+        """The run of the next `seconds`. Raises InputError where the slider leaves the beam."""
+        return self._run(state, command, seconds, None)
+
+    def read(self, state: Motion) -> tuple[float, float]:
+        """(position, mean speed over the last drive period of the tick)."""
+        end = float(state.travelled[-1])
+        return end, float(end - state.travelled[-2]) / float(state.times[-1] - state.times[-2])
+
+    def _run(self, before: Motion | None, command: float, seconds: float, speed: float | None) -> Motion:
+        periods = seconds / self.case.period
+        run = commanded(self.case, command, self.kind).run(periods, max(round(periods), 1) + 1, before, speed)
+        if not run.statistics.finished:
+            raise InputError(f"duration: the slider {run.statistics.stopped} at {run.end.time:.4g} s, give less")
+        return run
+
+
+class Resonance(Struct, frozen=True, kw_only=True):
+    """The envelope of a resonance: a' = -(1/tau + i (omega - omega_n)) a - i/tau; the command is omega, rad/s.
+
+    a is the response over its amplitude at resonance, its phase relative to the drive; a tick is exact.
+    """
+
+    omega: float
+    """omega_n, rad/s."""
+    time_constant: float
+    """tau = 2Q/omega_n, s."""
+
+    def start(self, command: float) -> complex:
+        """The steady state."""
+        return -1j / (1.0 + 1j * (command - self.omega) * self.time_constant)
+
+    def advance(self, state: complex, command: float, seconds: float) -> complex:
+        """The envelope after `seconds`."""
+        rate, steady = -(1.0 / self.time_constant + 1j * (command - self.omega)), self.start(command)
+        return complex(steady + (state - steady) * np.exp(rate * seconds))
+
+
+class BeamState(NamedTuple):
+    """State of a `DrivenBeam`."""
+
+    run: Motion | None = None
+    phase: float = 0.0
+    """Phase of the drive at the end, rad."""
+    phasors: ComplexArray = np.zeros(0, dtype=complex)
+    """(p,), m: response over the last period relative to the drive."""
+
+
+class DrivenBeam(Struct, frozen=True, kw_only=True):
+    """A beam without slider in time, under forces whose frequency and complex amplitudes change from tick to tick."""
+
+    forces: tuple[PointForce, ...]
+    settings: dict[str, Any]
+    """Arguments of `simulate`: beam, model, count, modal_damping, at (p positions of sensors, m)."""
+
+    def advance(
+        self, state: BeamState, omega: float, seconds: float, factors: ComplexArray | complex = 1.0
+    ) -> BeamState:
+        """The state after `seconds`, at least a period, at omega, rad/s, with forces times `factors` (forces,)."""
+        from verify.travelling_wave import phasors
+
+        hertz, begin = omega / (2.0 * pi), state.run.end.time if state.run else 0.0
+        turn = complex(np.exp(1j * (state.phase - omega * begin)))  # the phase of the drive is continuous
+        pairs = zip(self.forces, np.broadcast_to(factors, len(self.forces)).tolist(), strict=True)
+        forces = [point_force(force.position, turn * factor * phasor(force)) for force, factor in pairs]
+        samples = 16 * round(seconds * hertz + 1.0) + 1
+        run = simulate(
+            forces=forces, frequency_hz=hertz, duration=seconds, samples=samples, continue_from=state.run,
+            **self.settings,
+        )  # fmt: skip
+        last = run.times > run.times[-1] - 1.5 / hertz
+        measured = phasors(run.times[last], run.deflection[last], hertz) / turn
+        return BeamState(run, state.phase + omega * seconds, measured)
