@@ -1,11 +1,8 @@
-"""Sampled controllers: PI with feed-forward, saturation, anti-windup and delay; extremum seeking; tuning in closed form.
-
-A controller is a frozen value; `step` maps its state and a measurement to the next state and the command.
-"""
+"""Sampled controllers as frozen values, whose `step` maps a state and a measurement to the next state and a command."""
 
 from collections.abc import Callable
 from math import exp, inf, pi, sin, sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from msgspec import Struct
@@ -14,12 +11,11 @@ from verify.errors import InputError
 from verify.validation import check_integer, check_number
 
 
-class ControllerState(Struct, frozen=True):
-    """State of a `Controller` between two ticks."""
+class ControllerState(NamedTuple):
+    """State of a `Controller` between two ticks; `pending`: commands that wait for the delay, the next one first."""
 
     integral: Any
     pending: tuple[Any, ...]
-    """Computed commands that the delay holds back, the next one first."""
 
 
 class Controller(Struct, frozen=True, kw_only=True):
@@ -30,22 +26,14 @@ class Controller(Struct, frozen=True, kw_only=True):
     Systems, 3rd ed., Prentice Hall 1997, sec. 8.5). Complex signals, as amplitudes of waves, are limited in magnitude.
     """
 
-    gain: complex
-    """K_p, command per unit of the measured signal."""
-    integral_gain: complex
-    """K_i, 1/s."""
-    sample_time: float
-    """h, s."""
-    lower: float = -inf
-    """Least command; not used for complex signals."""
-    upper: float = inf
-    """Largest command, or magnitude of a complex one."""
-    delay: int = 0
-    """Computational delay, ticks."""
-    position_gain: float = 0.0
-    """Gain of the position loop, 1/s; 0: the target is a speed."""
-    feed_forward: Callable[[float], float] = lambda speed: 0.0
-    """Steady command at a speed, m/s."""
+    gain: complex  # K_p, command per unit of the measured signal
+    integral_gain: complex  # K_i, 1/s
+    sample_time: float  # h, s
+    lower: float = -inf  # Least command; not for complex signals
+    upper: float = inf  # Largest command, or magnitude of a complex one
+    delay: int = 0  # Computational delay, ticks
+    position_gain: float = 0.0  # Gain of the position loop, 1/s; 0: the target is a speed
+    feed_forward: Callable[[float], float] = lambda speed: 0.0  # f, steady command at a speed, m/s
 
     def __post_init__(self) -> None:
         check_number("sample_time", self.sample_time, "seconds", above=0)
@@ -60,7 +48,7 @@ class Controller(Struct, frozen=True, kw_only=True):
     def step(
         self, state: ControllerState, target: Any, measured: Any, position: float = 0.0
     ) -> tuple[ControllerState, Any]:
-        """(next state, command from this tick to the next), for the target (m/s; m with a position loop)."""
+        """(next state, command from this tick to the next) for a target, m with a position loop."""
         if self.position_gain:
             target = self.position_gain * (target - position)
         error = target - measured
@@ -84,6 +72,15 @@ def magnitude_optimum(plant_gain: float, slow: float, fast: float) -> tuple[floa
     return 0.5 * slow / (plant_gain * fast), 0.5 / (plant_gain * fast)
 
 
+def step_overshoot(loop_gain: float, slow: float, fast: float) -> float:
+    """Overshoot of the closed loop K/(slow s (1 + fast s)), a ratio, K being K_p times the gain of the plant.
+
+    exp(-pi zeta/sqrt(1 - zeta^2)) with the damping ratio zeta = sqrt(slow/(K fast))/2; 0 from zeta = 1 on.
+    """
+    zeta = 0.5 * sqrt(slow / (loop_gain * fast))
+    return exp(-pi * zeta / sqrt(1.0 - zeta**2)) if zeta < 1.0 else 0.0
+
+
 def phase_locked_loop(
     time_constant: float, frequency_hz: float, sample_time: float, damping_ratio: float = 1.0 / sqrt(2.0)
 ) -> Controller:
@@ -96,25 +93,6 @@ def phase_locked_loop(
     return Controller(gain=0.0, integral_gain=gain, sample_time=sample_time, lower=0.8 * omega, upper=1.2 * omega)
 
 
-def damping_ratio(loop_gain: float, slow: float, fast: float) -> float:
-    """zeta = sqrt(slow/(K fast))/2 of the loop K/(slow s (1 + fast s)), K being K_p times the gain of the plant."""
-    return 0.5 * sqrt(slow / (loop_gain * fast))
-
-
-def step_overshoot(zeta: float) -> float:
-    """Overshoot exp(-pi zeta/sqrt(1 - zeta^2)) of a second-order system without zeros, a ratio; 0 from zeta = 1 on."""
-    return exp(-pi * zeta / sqrt(1.0 - zeta**2)) if zeta < 1.0 else 0.0
-
-
-class SeekerState(Struct, frozen=True):
-    """State of an `ExtremumSeeker` between two ticks."""
-
-    estimate: float
-    mean: float | None = None
-    """Low-pass part of the measurement; None before the first."""
-    ticks: int = 0
-
-
 class ExtremumSeeker(Struct, frozen=True, kw_only=True):
     """Extremum seeking by a sinusoidal perturbation (M. Krstic and H.-H. Wang, Automatica 36:595, 2000).
 
@@ -122,22 +100,19 @@ class ExtremumSeeker(Struct, frozen=True, kw_only=True):
     integrates it. Near a maximum with second derivative f'' it converges as exp(-gain |f''| t).
     """
 
-    dither: float
-    """Amplitude a of the perturbation, in units of the command."""
-    omega: float
-    """Its angular frequency, rad/s, well below the rates of the plant."""
-    gain: float
-    """Rate of the estimate per unit of slope; negative for a minimum."""
-    washout: float
-    """Corner frequency of the high-pass filter, rad/s, below `omega`."""
-    sample_time: float
-    """s."""
+    dither: float  # Amplitude a of the perturbation, in units of the command
+    omega: float  # Its angular frequency, rad/s, well below the rates of the plant
+    gain: float  # Rate of the estimate per unit of slope; negative for a minimum
+    washout: float  # Corner frequency of the high-pass filter, rad/s, below `omega`
+    sample_time: float  # s
 
-    def step(self, state: SeekerState, measured: float) -> tuple[SeekerState, float]:
-        """(next state, command from this tick to the next) for the measurement under the previous command."""
-        h, mean = self.sample_time, measured if state.mean is None else state.mean
-        slope = 2.0 / self.dither * (measured - mean) * sin(self.omega * h * state.ticks)
-        after = SeekerState(
-            state.estimate + h * self.gain * slope, mean + h * self.washout * (measured - mean), state.ticks + 1
-        )
-        return after, after.estimate + self.dither * sin(self.omega * h * after.ticks)
+    def step(self, state: tuple[float, float, int], measured: float) -> tuple[tuple[float, float, int], float]:
+        """(next state, command) for the measurement under the previous command.
+
+        State: estimate, mean of the measurement, number of ticks; it starts as (command, first measurement, 0).
+        """
+        estimate, mean, n = state
+        change, phase = measured - mean, self.omega * self.sample_time
+        estimate += self.sample_time * self.gain * 2.0 / self.dither * change * sin(phase * n)
+        after = estimate, mean + self.sample_time * self.washout * change, n + 1
+        return after, estimate + self.dither * sin(phase * (n + 1))

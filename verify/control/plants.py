@@ -1,7 +1,4 @@
-"""Plants of the controllers: a motor averaged over the drive period, motor and beam in full, and one resonance.
-
-A plant is a frozen value; `advance` maps a state and a command, constant over a tick, to the state after it.
-"""
+"""Plants as frozen values, whose `advance` maps a state and a command, constant over a tick, to the state after it."""
 
 from collections.abc import Callable
 from math import copysign, pi
@@ -24,46 +21,78 @@ Force = Callable[[float, float], tuple[float, float, float]]
 REACH = 1.5
 """Largest speed of a force-speed map over the crest speed."""
 MOST_PERIODS = 400
-"""Drive periods until the mean force converges."""
+"""Drive periods until the mean force of unilateral contact converges."""
 SUBSTEPS = 4
 """Steps of the averaged motor in a tick, each with a linear force."""
 
 
-def commanded(case: MotorCase, command: float, kind: str) -> MotorCase:
+def commanded(case: MotorCase, command: float, output: str) -> MotorCase:
     """The motor under a command: a factor of all amplitudes, or the phase of the last force, degrees."""
     forces = case.forces
-    if kind == "phase":
+    if output == "phase":
         return replace(case, forces=(*forces[:-1], replace(forces[-1], phase_deg=command)))
     return replace(case, forces=tuple(replace(one, amplitude=command * one.amplitude) for one in forces))
 
 
+def force_map(case: MotorCase, lower: float, upper: float, output: str, speeds: int, curves: int) -> Force:
+    """Bicubic spline of the mean force over `speeds` prescribed speeds under each of `curves` constant commands.
+
+    Speeds reach 1.5 times the crest speed; beyond, the force is constant. Raises InputError for zero amplitude.
+    """
+    from scipy.interpolate import RectBivariateSpline
+
+    scaled = output == "amplitude"
+    if scaled and lower <= 0.0:
+        raise InputError(f"saturation = {[lower, upper]}: the force at zero amplitude is a step, give a lower limit")
+    top = REACH * crest_speed(case if scaled else commanded(case, 90.0, output))
+    grid, ratios = np.linspace(lower, upper, curves), np.linspace(-1.0, 1.0, speeds)
+    table = np.empty((curves, speeds))
+    for i, command in enumerate(grid.tolist()):
+        own = commanded(case, command, output)
+        for j, v in enumerate((top * (command if scaled else 1.0) * ratios).tolist()):
+            if case.slider.contact is None:
+                table[i, j] = own.run(1.0, 2, None, v).mean_friction
+            else:
+                table[i, j] = steady_state(own, v, MOST_PERIODS).means.force
+    table += case.slider.external_force
+    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, curves - 1), ky=3)
+
+    def force(v: float, y: float) -> tuple[float, float, float]:
+        at = min(max(y, lower), upper)
+        scale = top * (at if scaled else 1.0)
+        ratio = v / scale if abs(v) <= scale else copysign(1.0, v)
+        value, by_command, by_ratio = (float(spline.ev(at, ratio, *order)) for order in ((0, 0), (1, 0), (0, 1)))
+        by_ratio *= abs(v) <= scale
+        by_command -= by_ratio * ratio / at if scaled else 0.0
+        return value, by_ratio / scale, by_command * (y == at)
+
+    return force
+
+
 class AveragedMotor(Struct, frozen=True, kw_only=True):
-    """m dv/dt = F(v, y), dy/dt = (u - y)/tau_e: the wave follows the command u with the envelope's time constant.
+    """m dv/dt = F(v, y), dy/dt = (u - y)/tau_e: the wave follows the command u as the envelope of one resonance.
 
     A tick is exact for a force linear in v and y, otherwise of order 2 in a quarter of it (exponential Euler method of
     Rosenbrock type: M. Hochbruck and A. Ostermann, Acta Numerica 19:209, 2010). State: position, speed, envelope.
     """
 
-    mass: float
-    """kg."""
+    mass: float  # kg
     force: Force
-    time_constant: float
-    """tau_e = 2Q/omega, s."""
+    time_constant: float  # tau_e = 2Q/omega, s
 
     def start(self, speed: float, command: float) -> Array:
         """The state in equilibrium."""
         return np.array([0.0, speed, command])
 
     def advance(self, state: Array, command: float, seconds: float) -> Array:
-        """The state after `seconds` under a constant command."""
+        """The state after `seconds`."""
         from scipy.linalg import expm
 
         rates = np.zeros((4, 4))
         rates[0, 1], rates[2, 2:] = 1.0, np.array([-1.0, command]) / self.time_constant
         for _ in range(SUBSTEPS):
-            _, v, y = state.tolist()
-            force, by_speed, by_envelope = self.force(v, y)
-            rest = force - by_speed * v - by_envelope * y
+            force, by_speed, by_envelope = self.force(*state[1:].tolist())
+            rest = force - by_speed * state[1] - by_envelope * state[2]
             rates[1, 1:] = np.array([by_speed, by_envelope, rest]) / self.mass
             state = np.asarray((expm(rates * (seconds / SUBSTEPS)) @ [*state, 1.0])[:3])
         return state
@@ -84,7 +113,7 @@ class AveragedMotor(Struct, frozen=True, kw_only=True):
     def linearised(self, speed: float, command: float) -> "tuple[AveragedMotor, float, float]":
         """(linear motor, gain dv/du of the steady state, time constant m/|dF/dv|, s) about a speed and a command.
 
-        Raises InputError where the force does not fall with the speed, or does not depend on the command.
+        Raises InputError where they are no steady state, and where the force does not fall with the speed.
         """
         net, by_speed, by_command = self.force(speed, command)
         if by_speed >= 0.0 or by_command == 0.0 or abs(net) > 1e-6 * abs(by_command * command):
@@ -96,81 +125,39 @@ class AveragedMotor(Struct, frozen=True, kw_only=True):
         return replace(self, force=force), -by_command / by_speed, -self.mass / by_speed
 
 
-def force_map(case: MotorCase, lower: float, upper: float, kind: Commanded, speeds: int, commands: int) -> Force:
-    """Bicubic spline of the mean friction force over `speeds` x `commands` prescribed speeds and constant commands.
-
-    Speeds reach 1.5 times the crest speed; beyond, the force is constant. Raises InputError for zero amplitude.
-    """
-    from scipy.interpolate import RectBivariateSpline
-
-    if kind == "amplitude" and lower <= 0.0:
-        raise InputError(f"saturation = {[lower, upper]}: the force at zero amplitude is a step, give a lower limit")
-    scaled = kind == "amplitude"
-    top = REACH * crest_speed(case if scaled else commanded(case, 90.0, kind))
-    grid, ratios = np.linspace(lower, upper, commands), np.linspace(-1.0, 1.0, speeds)
-    table = np.empty((commands, speeds))
-    for i, command in enumerate(grid.tolist()):
-        own = commanded(case, command, kind)
-        for j, v in enumerate((top * (command if scaled else 1.0) * ratios).tolist()):
-            if case.slider.contact is None:
-                table[i, j] = own.run(1.0, 2, None, v).mean_friction
-            else:
-                table[i, j] = steady_state(own, v, MOST_PERIODS).means.force
-    table += case.slider.external_force
-    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, commands - 1), ky=min(3, speeds - 1))
-
-    def force(v: float, y: float) -> tuple[float, float, float]:
-        at = min(max(y, lower), upper)
-        scale = top * (at if scaled else 1.0)
-        ratio = v / scale if abs(v) <= scale else copysign(1.0, v)
-        value, by_command, by_ratio = (float(spline.ev(at, ratio, *order)) for order in ((0, 0), (1, 0), (0, 1)))
-        by_ratio *= abs(v) <= scale
-        by_command -= by_ratio * ratio / at if scaled else 0.0
-        return value, by_ratio / scale, by_command * (y == at)
-
-    return force
-
-
 class FullMotor(Struct, frozen=True, kw_only=True):
-    """Beam and slider in time: every tick continues the run with other amplitudes or phases of the forces."""
+    """Beam and slider in time: every tick continues the run under a new command."""
 
-    case: MotorCase
-    """With start = 'rest': the field grows and decays by its modes."""
-    kind: str = "amplitude"
-    settling: float = 0.0
-    """Time at the initial speed and command before the first tick, s."""
+    case: MotorCase  # With start = 'rest', so that the field grows and decays by its modes
+    output: str  # amplitude or phase
+    settling: float  # Time at the initial speed and command before the first tick, s
 
     def start(self, speed: float, command: float) -> Motion:
-        """The run at a prescribed speed and a fixed position up to the first tick."""
-        return self._run(None, command, max(self.settling, 2.0 * self.case.period), speed)
+        """The run at a prescribed speed and a fixed position before the first tick."""
+        return self.advance(None, command, self.settling, speed)
 
-    def advance(self, state: Motion, command: float, seconds: float) -> Motion:
+    def advance(self, state: Motion | None, command: float, seconds: float, speed: float | None = None) -> Motion:
         """The run of the next `seconds`. Raises InputError where the slider leaves the beam."""
-        return self._run(state, command, seconds, None)
+        periods = seconds / self.case.period
+        run = commanded(self.case, command, self.output).run(periods, max(round(periods), 1) + 1, state, speed)
+        if not run.statistics.finished:
+            raise InputError(f"duration: the slider {run.statistics.stopped} after {run.end.time:.4g} s, shorten it")
+        return run
 
     def read(self, state: Motion) -> tuple[float, float]:
         """(position, mean speed over the last drive period of the tick)."""
-        end = float(state.travelled[-1])
-        return end, float(end - state.travelled[-2]) / float(state.times[-1] - state.times[-2])
-
-    def _run(self, before: Motion | None, command: float, seconds: float, speed: float | None) -> Motion:
-        periods = seconds / self.case.period
-        run = commanded(self.case, command, self.kind).run(periods, max(round(periods), 1) + 1, before, speed)
-        if not run.statistics.finished:
-            raise InputError(f"duration: the slider {run.statistics.stopped} at {run.end.time:.4g} s, give less")
-        return run
+        (before, end), times = state.travelled[-2:].tolist(), state.times[-2:]
+        return end, (end - before) / float(times[1] - times[0])
 
 
 class Resonance(Struct, frozen=True, kw_only=True):
-    """The envelope of a resonance: a' = -(1/tau + i (omega - omega_n)) a - i/tau; the command is omega, rad/s.
+    """The envelope of a resonance, a' = -(1/tau + i (omega - omega_n)) a - i/tau; the command is omega, rad/s.
 
     a is the response over its amplitude at resonance, its phase relative to the drive; a tick is exact.
     """
 
-    omega: float
-    """omega_n, rad/s."""
-    time_constant: float
-    """tau = 2Q/omega_n, s."""
+    omega: float  # omega_n, rad/s
+    time_constant: float  # tau = 2Q/omega_n, s
 
     def start(self, command: float) -> complex:
         """The steady state."""
@@ -182,38 +169,26 @@ class Resonance(Struct, frozen=True, kw_only=True):
         return complex(steady + (state - steady) * np.exp(rate * seconds))
 
 
-class BeamState(NamedTuple):
-    """State of a `DrivenBeam`."""
+class BeamTick(NamedTuple):
+    """A tick of a beam without slider."""
 
-    run: Motion | None = None
-    phase: float = 0.0
-    """Phase of the drive at the end, rad."""
-    phasors: ComplexArray = np.zeros(0, dtype=complex)
-    """(p,), m: response over the last period relative to the drive."""
+    run: Motion
+    phase: float  # of the drive at the end, rad
+    phasors: ComplexArray  # (p,), m: response at `at` over the last 1.5 periods, relative to the drive
 
 
-class DrivenBeam(Struct, frozen=True, kw_only=True):
-    """A beam without slider in time, under forces whose frequency and complex amplitudes change from tick to tick."""
+def beam_tick(
+    forces: tuple[PointForce, ...], omega: float, seconds: float, before: BeamTick | None = None, **settings: Any
+) -> BeamTick:
+    """A beam in time under forces at omega, rad/s, with continuous phase; `settings` as in `simulate`."""
+    from verify.travelling_wave import phasors
 
-    forces: tuple[PointForce, ...]
-    settings: dict[str, Any]
-    """Arguments of `simulate`: beam, model, count, modal_damping, at (p positions of sensors, m)."""
-
-    def advance(
-        self, state: BeamState, omega: float, seconds: float, factors: ComplexArray | complex = 1.0
-    ) -> BeamState:
-        """The state after `seconds`, at least a period, at omega, rad/s, with forces times `factors` (forces,)."""
-        from verify.travelling_wave import phasors
-
-        hertz, begin = omega / (2.0 * pi), state.run.end.time if state.run else 0.0
-        turn = complex(np.exp(1j * (state.phase - omega * begin)))  # the phase of the drive is continuous
-        pairs = zip(self.forces, np.broadcast_to(factors, len(self.forces)).tolist(), strict=True)
-        forces = [point_force(force.position, turn * factor * phasor(force)) for force, factor in pairs]
-        samples = 16 * round(seconds * hertz + 1.0) + 1
-        run = simulate(
-            forces=forces, frequency_hz=hertz, duration=seconds, samples=samples, continue_from=state.run,
-            **self.settings,
-        )  # fmt: skip
-        last = run.times > run.times[-1] - 1.5 / hertz
-        measured = phasors(run.times[last], run.deflection[last], hertz) / turn
-        return BeamState(run, state.phase + omega * seconds, measured)
+    hertz, begin, phase = omega / (2.0 * pi), *((before.run.end.time, before.phase) if before else (0.0, 0.0))
+    turn = complex(np.exp(1j * (phase - omega * begin)))
+    run = simulate(
+        forces=[point_force(force.position, turn * phasor(force)) for force in forces], frequency_hz=hertz,
+        duration=seconds, samples=16 * round(seconds * hertz + 1.0), continue_from=before.run if before else None,
+        **settings,
+    )  # fmt: skip
+    last = run.times > run.times[-1] - 1.5 / hertz
+    return BeamTick(run, phase + omega * seconds, phasors(run.times[last], run.deflection[last], hertz) / turn)

@@ -1,6 +1,6 @@
 """Named quantities of interest for gates, claims, tables and `verify measure`: one module a family."""
 
-from verify.quantities import chain, contact, modes, motor, slider, waves  # noqa: F401
+from verify.quantities import chain, contact, control, modes, motor, slider, waves  # noqa: F401
 from verify.quantities.base import QUANTITIES, describe, evaluate, parse_arguments, quantity
 
 __all__ = ["QUANTITIES", "describe", "evaluate", "parse_arguments", "quantity"]

@@ -1,4 +1,4 @@
-"""The controlled motor of a scene: response to a step of the target, linearised, averaged and in full."""
+"""The controlled motor of a scene: response to a step of the target on the linear, the averaged and the full plant."""
 
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -11,11 +11,12 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.report.result import Result
     from verify.scene.model import Scene
-COLORS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
-NOTES = (
-    "Linear: about the target, a response without limits in closed form with the sampling as a time constant. "
-    "Averaged: force-speed curves and the envelope of one resonance. Full: beam and slider in time, whose envelope "
-    "beats at the detuning of its modes and whose speed is a mean over the last drive period.",
+COLOURS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
+LIMIT = {"color": "#7d8590", "linestyle": "--", "linewidth": 1.0}
+NOTE = (
+    "Linear and averaged plant: the wave follows the command with the time constant 2Q/omega of one resonance. Full: "
+    "between resonances it follows sooner and beats at the detuning of the modes; speed over the last drive period. "
+    "Settling: to 2 % of the step. Saturated: fraction of ticks with the command at a limit."
 )
 
 
@@ -26,21 +27,63 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
     title: ClassVar[str] = "The controlled motor"
 
     def check(self, scene: "Scene") -> None:
-        """Raise InputError for a scene without a driven slider."""
+        """Raise InputError without forces."""
         check_driven("control", scene)
-        self.check_scene(scene)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
-        """Responses of the plants up to the chosen one. Raises InputError."""
-        from verify.analysis.margins import beam_margins, marked, run_margins
+        """The responses of all plants up to the chosen one. Raises InputError."""
+        from verify.analysis.margins import beam_margins, marked
         from verify.analysis.verdict import Margin, void
         from verify.report.result import Column, Figure, Result
         from verify.studies.charts import percent, plot_lines, si, table
 
         progress("force over speed and command")
-        loop, chosen = self.loop(scene, cache), list(COLORS)[: list(COLORS).index(self.plant) + 1]
-        responses = {
-            name: loop.response(self, name, lambda part, name=name: progress(f"{name} plant, {100 * part:.0f} %"))
-            for name in chosen
+        loop, responses = self.loop(scene, cache), dict[str, Any]()
+        for plant in list(COLOURS)[: list(COLOURS).index(self.plant) + 1]:
+            progress(f"response of the {plant} plant")
+            responses[plant] = self.response(loop, plant)
+        last, hertz = responses[self.plant], scene.drive.frequency_hz if scene.drive else 0.0
+        margins = beam_margins(cache, [(self.model, self.count)], frequency_hz=hertz)
+        slow = "the motor is slow against a drive period"
+        size = 1.0 / (hertz * min(loop.times))
+        margins.append(Margin(name="averaging", size=size, fine=0.1, limit=1.0, condition=slow, is_error=False))
+        if self.plant == "full":
+            differs = abs(last.overshoot - responses["averaged"].overshoot)
+            margins.append(Margin(name="overshoot of the averaged plant", size=differs))
+        if last.settling_time is None:
+            margins.append(void("the loop", "the response does not settle", "give a longer duration, or smaller gains"))
+        results = {
+            Column("plant"): lambda row: row[0],
+            percent("overshoot", ".4g"): lambda row: row[1].overshoot,
+            si("settling time", "s"): lambda row: row[1].settling_time,
+            percent("steady error", "+.3g"): lambda row: row[1].steady_error,
+            percent("saturated", ".3g"): lambda row: row[1].saturated,
         }
-        last = responses[self.plant]
+        gains = {
+            Column("K_p"): lambda one: one.controller.gain,
+            Column("K_i", "1/s"): lambda one: one.controller.integral_gain,
+            si("sample time", "s"): lambda one: one.controller.sample_time,
+            si("motor time constant", "s"): lambda one: one.times[0],
+            si("envelope time constant", "s"): lambda one: one.times[1],
+            percent("overshoot in closed form", ".6g"): lambda one: one.overshoot,
+        }
+        what = (self.of, "m" if self.of == "position" else "m/s")
+        command = ("phase", "degrees") if self.output == "phase" else ("amplitude", "1")
+        ends = last.times[[0, -1]]
+        lines = [("target", ends, 0.0 * ends + self.target, LIMIT)]
+        steps = [("", ends, 0.0 * ends + one, LIMIT) for one in (loop.controller.lower, loop.controller.upper)]
+        for name, one in responses.items():
+            style = {"color": COLOURS[name], "linewidth": 1.4}
+            lines.append((name, one.times, one.controlled, style))
+            steps.append((name, one.times[:-1], one.command, style | {"drawstyle": "steps-post"}))
+        charts = (what, f"Controlled {self.of}", lines), (command, "Command", steps)
+        return Result(
+            summary=f"Overshoot {100.0 * last.overshoot:.3g} % on the {self.plant} plant.",
+            tables=[table("Step response", responses.items(), results, NOTE), table("Loop", [loop], gains)],
+            figures=[
+                Figure(f"control-{y[0]}", marked(title, margins), "After a step of the target at time 0.",
+                       partial(plot_lines, lines=drawn, x=("time", "s"), y=y))
+                for y, title, drawn in charts
+            ],
+            margins=margins,
+        )  # fmt: skip
