@@ -77,7 +77,7 @@ def step_overshoot(loop_gain: float, slow: float, fast: float) -> float:
 
     exp(-pi zeta/sqrt(1 - zeta^2)) with the damping ratio zeta = sqrt(slow/(K fast))/2; 0 from zeta = 1 on.
     """
-    zeta = 0.5 * sqrt(slow / (loop_gain * fast))
+    zeta = 0.5 * sqrt(slow / (loop_gain * fast)) if loop_gain > 0.0 else inf
     return exp(-pi * zeta / sqrt(1.0 - zeta**2)) if zeta < 1.0 else 0.0
 
 

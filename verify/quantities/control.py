@@ -30,6 +30,7 @@ class Loop(NamedTuple):
     command: float  # steady, before the step
     times: tuple[float, float]  # time constants of motor and envelope, s
     overshoot: float  # of the linear plant in closed form, sampling as a time constant
+    map_error: float  # of the interpolated force at the target, as a fraction of the speed
 
 
 class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -49,7 +50,7 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
     delay: Annotated[int, Meta(ge=0, description="computational delay, ticks")] = 0
     duration: Annotated[float, unit("s", gt=0), Meta(description="s; default: 30 ticks and envelopes")] | None = None
     speeds: Annotated[int, Meta(ge=4, le=101, description="points of every force-speed curve")] = 13
-    curves: Annotated[int, Meta(ge=2, le=51, description="number of force-speed curves over the command")] = 4
+    curves: Annotated[int, Meta(ge=2, le=51, description="number of force-speed curves over the command")] = 7
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
     modal_damping: opt.ModalDamping | None = None
@@ -68,6 +69,8 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
         if (slider := scene.slider) is None or not damping:
             raise InputError("control: a controlled motor has a [slider] and a damped beam, add it or modal_damping")
         hertz, forces = opt.drive_frequency(scene), opt.DriveOptions().forces(scene)
+        if not self.lower < self.upper:
+            raise InputError(f"lower = {self.lower!r} is not below upper = {self.upper!r}: exchange the limits")
         case = MotorCase(
             beam=scene.beam, forces=forces, frequency_hz=hertz, slider=slider, model=self.model, count=self.count,
             modal_damping=self.modal_damping,
@@ -83,7 +86,9 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
             return averaged.command_at(speed, *limits)
 
         speed = self.target if self.of == "speed" else 0.0
-        linear, plant_gain, motor = averaged.linearised(speed, command_at(speed))
+        if not self.lower < (at := command_at(speed)) < self.upper:
+            raise InputError(f"target = {self.target!r}: no command within its limits holds this speed, change it")
+        linear, plant_gain, motor = averaged.linearised(speed, at)
         h = self.sample_time or 8.0 / hertz
         slow, fast = max(motor, envelope), min(motor, envelope) + (self.delay + 0.5) * h
         best = magnitude_optimum(plant_gain, slow, fast)
@@ -95,9 +100,15 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
             position_gain=0.25 / fast if self.of == "position" else 0.0,  # damping ratio 1/sqrt(2) about the speed loop
             feed_forward=command_at if self.feed_forward else lambda speed: 0.0,
         )  # fmt: skip
-        motors = {"linear": linear, "averaged": averaged, "full": full}
-        overshoot = step_overshoot(gain * plant_gain, slow, fast)
-        return Loop(controller, motors, command_at(self.speed), (motor, envelope), overshoot)
+        motors: dict[str, plants.AveragedMotor | plants.FullMotor] = {
+            "linear": linear,
+            "averaged": averaged,
+            "full": full,
+        }
+        direct = plants.mean_force(plants.commanded(point, at, self.output), speed)
+        error = abs(direct * motor / (slider.mass * (speed or plant_gain * self.upper)))
+        closed = step_overshoot(gain * plant_gain, slow, fast)
+        return Loop(controller, motors, command_at(self.speed), (motor, envelope), closed, error)
 
     def response(self, loop: Loop, plant: str) -> "Response":
         """The response of one of the plants. Raises InputError."""

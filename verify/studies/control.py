@@ -47,6 +47,7 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         slow = "the motor is slow against a drive period"
         size = 1.0 / (hertz * min(loop.times))
         margins.append(Margin(name="averaging", size=size, fine=0.1, limit=1.0, condition=slow, is_error=False))
+        margins.append(Margin(name="interpolation of the force", size=loop.map_error, remedy="raise control.curves"))
         if self.plant == "full":
             differs = abs(last.overshoot - responses["averaged"].overshoot)
             margins.append(Margin(name="overshoot of the averaged plant", size=differs))
