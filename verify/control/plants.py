@@ -41,21 +41,21 @@ def mean_force(case: MotorCase, speed: float) -> float:
     return steady_state(case, speed, MOST_PERIODS).means.force + case.slider.external_force
 
 
-def force_map(case: MotorCase, lower: float, upper: float, output: str, speeds: int, curves: int) -> Force:
-    """Bicubic spline of the mean force over `speeds` prescribed speeds under each of `curves` constant commands.
+def force_map(case: MotorCase, limits: tuple[float, float], output: str, size: tuple[int, int]) -> Force:
+    """Bicubic spline of the mean force, from constant commands within limits x prescribed speeds, `size` of each.
 
     Speeds reach 1.5 times the crest speed; beyond, the force is constant. Raises InputError for zero amplitude.
     """
     from scipy.interpolate import RectBivariateSpline
 
-    scaled = output == "amplitude"
-    if scaled and lower <= 0.0:
-        raise InputError(f"saturation = {[lower, upper]}: the force at zero amplitude is a step, give a lower limit")
+    (lower, upper), scaled = limits, output == "amplitude"
+    if not lower < upper or (scaled and lower <= 0.0):
+        raise InputError(f"lower = {lower!r}: give it below upper = {upper!r}, and above 0 for an amplitude")
     top = REACH * crest_speed(case if scaled else commanded(case, 90.0, output))
-    grid, ratios = np.linspace(lower, upper, curves), np.linspace(-1.0, 1.0, speeds)
+    grid, ratios = np.linspace(lower, upper, size[0]), np.linspace(-1.0, 1.0, size[1])
     motors = [(commanded(case, command, output), top * (command if scaled else 1.0)) for command in grid.tolist()]
     table = [[mean_force(motor, v) for v in (fastest * ratios).tolist()] for motor, fastest in motors]
-    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, curves - 1), ky=3)
+    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, size[0] - 1), ky=3)
 
     def force(v: float, y: float) -> tuple[float, float, float]:
         at = min(max(y, lower), upper)

@@ -1,7 +1,7 @@
 """The controlled motor of a scene: settings of the loop, and its overshoot."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import msgspec
 from msgspec import Meta
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.control.controller import Controller
     from verify.control.loop import Response
-    from verify.control.plants import AveragedMotor, FullMotor
 PLANTS = "plant: linearised at the target, averaged over a drive period, or beam and slider in full"
 OUTPUT = "command: factor of all forces, or phase of the last one, degrees"
 
@@ -26,7 +25,7 @@ class Loop(NamedTuple):
     """A controller, and its motor as every plant: linear, averaged, full."""
 
     controller: "Controller"
-    plants: "dict[str, AveragedMotor | FullMotor]"
+    plants: dict[str, Any]
     command: float  # steady, before the step
     times: tuple[float, float]  # time constants of motor and envelope, s
     overshoot: float  # of the linear plant in closed form, sampling as a time constant
@@ -69,15 +68,13 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
         if (slider := scene.slider) is None or not damping:
             raise InputError("control: a controlled motor has a [slider] and a damped beam, add it or modal_damping")
         hertz, forces = opt.drive_frequency(scene), opt.DriveOptions().forces(scene)
-        if not self.lower < self.upper:
-            raise InputError(f"lower = {self.lower!r} is not below upper = {self.upper!r}: exchange the limits")
         case = MotorCase(
             beam=scene.beam, forces=forces, frequency_hz=hertz, slider=slider, model=self.model, count=self.count,
             modal_damping=self.modal_damping,
         )  # fmt: skip
         point = replace(case, slider=replace(slider, coupling="one-way")) if slider.contact is None else case
         limits = self.lower, self.upper
-        force = cached(cache, plants.force_map, point, *limits, self.output, self.speeds, self.curves)
+        force = cached(cache, plants.force_map, point, limits, self.output, (self.curves, self.speeds))
         envelope = 1.0 / (damping * 2.0 * pi * hertz)
         averaged = plants.AveragedMotor(mass=slider.mass, force=force, time_constant=envelope)
         full = plants.FullMotor(case=replace(case, start="rest"), output=self.output, settling=8.0 * envelope)
@@ -91,20 +88,15 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
         linear, plant_gain, motor = averaged.linearised(speed, at)
         h = self.sample_time or 8.0 / hertz
         slow, fast = max(motor, envelope), min(motor, envelope) + (self.delay + 0.5) * h
-        best = magnitude_optimum(plant_gain, slow, fast)
-        gain, integral_gain = (
-            own if own is not None else of for own, of in zip((self.gain, self.integral_gain), best, strict=True)
-        )
+        gain, integral_gain = magnitude_optimum(plant_gain, slow, fast)
+        gain = gain if self.gain is None else self.gain
+        integral_gain = integral_gain if self.integral_gain is None else self.integral_gain
         controller = Controller(
             gain=gain, integral_gain=integral_gain, sample_time=h, lower=self.lower, upper=self.upper, delay=self.delay,
             position_gain=0.25 / fast if self.of == "position" else 0.0,  # damping ratio 1/sqrt(2) about the speed loop
             feed_forward=command_at if self.feed_forward else lambda speed: 0.0,
         )  # fmt: skip
-        motors: dict[str, plants.AveragedMotor | plants.FullMotor] = {
-            "linear": linear,
-            "averaged": averaged,
-            "full": full,
-        }
+        motors = {"linear": linear, "averaged": averaged, "full": full}
         direct = plants.mean_force(plants.commanded(point, at, self.output), speed)
         error = abs(direct * motor / (slider.mass * (speed or plant_gain * self.upper)))
         closed = step_overshoot(gain * plant_gain, slow, fast)
