@@ -64,12 +64,13 @@ def test_back_calculation_ends_windup_at_the_limit():
     for _ in range(400):
         state, command = one.step(state, 5.1, 1.4)
     assert command == 0.7
-    assert state.integral == pytest.approx(0.7, rel=1e-9)
+    assert state[0] == pytest.approx(0.7, rel=1e-9)
     _, command = one.step(state, 5.1, 5.2)
     assert command == pytest.approx(0.7 - 2.3 * 0.1, rel=1e-9)
-    complex_one = Controller(gain=0.0, integral_gain=100.0, sample_time=1e-3, upper=0.3)
-    limited = complex_one.step(complex_one.start(np.array([3.0 + 4.0j, 0.1j])), 0.0, 0.0)[1]
-    assert limited == pytest.approx([0.18 + 0.24j, 0.1j], rel=1e-12)
+    waves = Controller(gain=0.0, integral_gain=100.0, sample_time=1e-3, upper=0.3)
+    assert waves.step(waves.start(np.array([3.0 + 4.0j, 0.1j])), 0.0, 0.0)[1] == pytest.approx(
+        [0.18 + 0.24j, 0.1j], rel=1e-12
+    )
 
 
 def test_a_tick_of_a_nonlinear_motor_is_of_order_two():
@@ -106,8 +107,7 @@ def tracked(detuned, ratio, from_steady, h=TAU / 400):
 
 def test_a_phase_locked_loop_overshoots_by_its_closed_forms():
     small = 1e-3 / TAU
-    assert -tracked(small, 1.0, True).min() < 1e-4  # K_i = 1/(4 tau^2): critical
-    assert -tracked(small, 1.0, False).min() < 1e-4
+    assert -min(tracked(small, 1.0, steady).min() for steady in (True, False)) < 1e-4  # K_i = 1/(4 tau^2): critical
     ratio = sqrt(0.5)  # K_i = 1/(2 tau^2); from the steady state e^{-x} cos x, x = t/(2 tau)
     found = tracked(small, ratio, True)
     assert -found.min() == pytest.approx(exp(-0.75 * pi) / sqrt(2.0), rel=0.01)  # 6.702 %
@@ -121,9 +121,8 @@ def test_the_loop_on_the_beam_is_that_on_one_resonance():
     tau, h, first = 1.0 / (zeta * 2.0 * pi * hertz), 2.0 / hertz, 2.0 * pi * hertz * 0.997
     loop, one = phase_locked_loop(tau, hertz, h), Resonance(omega=2.0 * pi * hertz, time_constant=tau)
     beam = {"beam": BEAM, "model": "fem", "count": 6, "modal_damping": zeta, "at": [0.051]}
-    force = (PointForce(position=0.043, amplitude=0.7, phase_deg=31.0),)
+    force, turn = (PointForce(position=0.043, amplitude=0.7, phase_deg=31.0),), np.exp(-1j * np.deg2rad(31.0))
     tick, envelope = beam_tick(force, first, 12 * tau, **beam), one.start(first)
-    turn = np.exp(-1j * np.deg2rad(31.0))
     states, commands = [loop.start(first)] * 2, []
     for _ in range(160):
         phases = float(np.angle(turn * tick.phasors[0])), float(np.angle(envelope))

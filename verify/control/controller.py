@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import exp, inf, pi, sin, sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from msgspec import Struct
@@ -11,11 +11,8 @@ from verify.errors import InputError
 from verify.validation import check_integer, check_number
 
 
-class ControllerState(NamedTuple):
-    """State of a `Controller` between two ticks; `pending`: commands that wait for the delay, the next one first."""
-
-    integral: Any
-    pending: tuple[Any, ...]
+State = tuple[Any, tuple[Any, ...]]
+"""State of a `Controller` between two ticks: integral, and commands that wait for the delay, the next one first."""
 
 
 class Controller(Struct, frozen=True, kw_only=True):
@@ -41,26 +38,25 @@ class Controller(Struct, frozen=True, kw_only=True):
         if not self.lower < self.upper:
             raise InputError(f"lower = {self.lower!r} is not below upper = {self.upper!r}: exchange the limits")
 
-    def start(self, command: Any, target: float = 0.0) -> ControllerState:
+    def start(self, command: Any, target: float = 0.0) -> State:
         """The state in equilibrium at this command and target."""
-        return ControllerState(command - self.feed_forward(target), (command,) * self.delay)
+        return command - self.feed_forward(target), (command,) * self.delay
 
-    def step(
-        self, state: ControllerState, target: Any, measured: Any, position: float = 0.0
-    ) -> tuple[ControllerState, Any]:
+    def step(self, state: State, target: Any, measured: Any, position: float = 0.0) -> tuple[State, Any]:
         """(next state, command from this tick to the next) for a target, m with a position loop."""
+        integral, pending = state
         if self.position_gain:
             target = self.position_gain * (target - position)
         error = target - measured
-        wanted = self.feed_forward(target) + self.gain * error + state.integral
+        wanted = self.feed_forward(target) + self.gain * error + integral
         if np.iscomplexobj(wanted):
             command = wanted * np.minimum(1.0, self.upper / np.maximum(abs(wanted), 1e-300))
         else:
             command = min(max(wanted, self.lower), self.upper)
         reset = max(abs(self.gain / self.integral_gain) if self.integral_gain else inf, self.sample_time)
         rate = self.integral_gain * error + (command - wanted) / reset
-        pending = (*state.pending, command)
-        return ControllerState(state.integral + self.sample_time * rate, pending[1:]), pending[0]
+        pending = (*pending, command)
+        return (integral + self.sample_time * rate, pending[1:]), pending[0]
 
 
 def magnitude_optimum(plant_gain: float, slow: float, fast: float) -> tuple[float, float]:
