@@ -10,7 +10,6 @@ from msgspec import Struct
 from verify.errors import InputError
 from verify.validation import check_integer, check_number
 
-
 State = tuple[Any, tuple[Any, ...]]
 """State of a `Controller` between two ticks: integral, and commands that wait for the delay, the next one first."""
 
