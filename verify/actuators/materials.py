@@ -19,8 +19,6 @@ Direction = Literal["33", "31"]
 """Wave along the field, or across it."""
 Form = Literal["mason", "klm", "circuit"]
 """Mason's three-port, the model of Krimholtz, Leedom and Matthaei, or the circuit of Butterworth and Van Dyke."""
-
-
 Stiffness = Annotated[float, unit("Pa"), Meta(description="cE, Pa")]
 Stress = Annotated[float, unit("C/m^2"), Meta(description="e, C/m^2")]
 Permittivity = Annotated[float, unit("relative", gt=0), Meta(description="epsS over that of vacuum")]
@@ -73,12 +71,13 @@ class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
             raise InputError(
                 f"material.c11 = {self.c11!r}: c11 to c44 are not positive definite, check the constants and their unit"
             )
-        limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(self.derived.k33, self.derived.k31, 1e-300)
-        if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
-            raise InputError(
-                f"material.piezoelectric_loss = {self.piezoelectric_loss!r} makes the bar a source of energy: give at "
-                f"most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
-            )
+        if self.piezoelectric_loss:
+            limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(self.derived.k33, self.derived.k31, 1e-300)
+            if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
+                raise InputError(
+                    f"material.piezoelectric_loss = {self.piezoelectric_loss!r} makes the bar a source of energy: give "
+                    f"at most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
+                )
 
     @cached_property
     def strain_charge(self) -> "tuple[Array, Array, Array]":

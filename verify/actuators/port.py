@@ -1,17 +1,14 @@
 """The electrical and the mechanical port of an actuator, which all its forms share."""
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import msgspec
 
-if TYPE_CHECKING:
-    from verify.arrays import ComplexArray
+from verify.arrays import ComplexArray
 
-    Number: TypeAlias = complex | ComplexArray
-else:
-    Number = Any
-    """A number, or one for each frequency, (n,). Scenes import this module, and not numpy."""
+Number = complex | ComplexArray
+"""A number, or one for each frequency, (n,)."""
 
 
 class Port(msgspec.Struct, frozen=True, eq=False, kw_only=True):

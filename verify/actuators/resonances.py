@@ -70,7 +70,7 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
     check_type("actuator", actuator, Longitudinal)
     check_integer("count", count, 1)
     lossless, rigid = actuator.lossless, int(actuator.base == "free")
-    parts = lossless.parts()
+    parts = lossless.parts
     # the count is lost in rounding far below the first mode, and at half waves of a line: 0.48 is not 0.5
     scale = 0.48 / sum(line.length / complex(line.speed).real for line in parts if line is not None)
     lowest = 1e-6 * scale

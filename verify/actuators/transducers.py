@@ -3,6 +3,7 @@
 A base, a passive or piezoelectric line, and the tip, whose outward velocity and force are the mechanical port.
 """
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import msgspec
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from verify.actuators.bar import Line, PiezoLine
 
 Base = Literal["fixed", "free"] | Annotated[float, unit("N/m", gt=0)]
-Layering = Literal["layers", "one-bar"]
 Loss = Annotated[Relative, unit("loss tangent", ge=0, lt=1)]
 LOSSES = ("dielectric_loss", "mechanical_loss", "piezoelectric_loss")
 
@@ -30,7 +30,7 @@ class Parts(NamedTuple):
     front: "Line | None"
 
 
-class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """What all longitudinal transducers share. Raises InputError for values outside their limits."""
 
     material: MaterialName | PiezoMaterial = "pzt-4"
@@ -52,7 +52,7 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         validate(self, "actuator")
         _ = self.ceramic
 
-    @property
+    @cached_property
     def ceramic(self) -> PiezoMaterial:
         """The material with the transducer's own losses. Raises InputError where they make it a source of energy."""
         material = PIEZO[self.material] if isinstance(self.material, str) else self.material
@@ -64,20 +64,17 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """The transducer without losses."""
         return replace(self, **dict.fromkeys(LOSSES, 0.0))
 
+    @cached_property
     def parts(self) -> Parts:
         """Its lines from base to tip."""
         raise NotImplementedError
 
     def port(self, omega: Any) -> Port:
         """The port at the tip at angular frequencies omega (rad/s), a number or (n,)."""
-        back, active, front = self.parts()
+        back, active, front = self.parts
         base = {"fixed": None, "free": 0.0}[self.base] if isinstance(self.base, str) else self.base / (1j * omega)
         port = active.three_port(omega).port(base if back is None else back.input_impedance(omega, base))
         return port if front is None else front.after(omega, port)
-
-    def _rings(self, layers: int, thickness: float, area: float, layering: Layering) -> "PiezoLine":
-        one, each = (layers, 1) if layering == "one-bar" else (1, layers)
-        return self._piezo("33", length=one * thickness, area=area, gap=thickness, layers=each)
 
     def _piezo(self, direction: Direction, **sizes: Any) -> "PiezoLine":
         from verify.actuators.bar import piezo_line
@@ -93,6 +90,7 @@ class Bar33(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The bar."""
         return Parts(None, self._piezo("33", length=self.length, area=self.area, gap=self.length), None)
@@ -108,6 +106,7 @@ class Bar31(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     thickness: Annotated[float, unit("m", gt=0)]
     """Distance of the electrodes, m."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The bar."""
         area, gap = self.width * self.thickness, self.thickness
@@ -128,14 +127,17 @@ class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     """m."""
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
-    layering: Layering = "layers"
-    """layers: exact; one-bar: as a single bar, for frequencies well below the first resonance."""
+    layering: Literal["layers", "one-bar"] = "layers"
+    """layers: exact; one-bar: as a single bar, well below the first resonance."""
     base: Base = "fixed"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
 
+    @cached_property
     def parts(self) -> Parts:
         """The layers."""
-        return Parts(None, self._rings(self.layers, self.layer_thickness, self.area, self.layering), None)
+        joined, layers = (self.layers, 1) if self.layering == "one-bar" else (1, self.layers)
+        gap = self.layer_thickness
+        return Parts(None, self._piezo("33", length=joined * gap, area=self.area, gap=gap, layers=layers), None)
 
 
 class EndMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -179,8 +181,6 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Mass at the tip."""
     back: EndMass | None = None
     """Mass at the base; default: that of the tip."""
-    layering: Layering = "layers"
-    """layers: exact; one-bar: the rings as a single bar, equal for two rings between equal masses."""
 
     @property
     def lossless(self) -> "Langevin":
@@ -188,9 +188,11 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         masses = {name: replace(mass, loss_factor=0.0) for name in ("front", "back") if (mass := getattr(self, name))}
         return replace(self, **dict.fromkeys(LOSSES, 0.0), **masses)
 
+    @cached_property
     def parts(self) -> Parts:
         """Back mass, rings, front mass."""
-        rings = self._rings(self.rings, self.ring_thickness, self.area, self.layering)
+        gap = self.ring_thickness
+        rings = self._piezo("33", length=gap, area=self.area, gap=gap, layers=self.rings)
         return Parts((self.back or self.front).line(self.area), rings, self.front.line(self.area))
 
 
