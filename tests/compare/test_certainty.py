@@ -109,6 +109,20 @@ def test_squares_and_periods_are_recognised(unit, values):
     assert (data["unit"], data["passed"]) == (unit, True)
 
 
+def test_rigid_motions_of_squares_are_rounding_errors_in_any_order():
+    plane = euler(BAR, [4.730040745, 7.853204624, 10.995607838])
+    squares = (2 * pi * np.sort([*plane, *1.5 * plane])) ** 2
+    noise = [-1e-3, 2e-3, -4e-4, 1e-3, 3e-3, 5e-3]
+    data = compared(replace(BAR, supports=("free", "free")), [*noise, *squares], digits=7, count=20).data
+    assert (data["unit"], data["passed"]) == ("rad2/s2", True)
+
+
+def test_a_factor_that_is_not_likelier_but_agrees_is_of_too_few_frequencies():
+    """Elsewhere the nearest differ by 1e-3, here all four digits agree."""
+    data = compared(CLAMPED, 0.976 * rigid_links(CLAMPED, 20)[:5], digits=4).data
+    assert (data["status"], data["best"]["wall"], data["best"]["fault"]["kind"]) == ("few", "half", "factor")
+
+
 FACTORS = {"sqrt(g)": sqrt(9.80665), "plane strain": 1 / sqrt(1 - 0.33**2), "exchanged": 0.03 / 0.004}
 
 

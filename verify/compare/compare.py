@@ -14,7 +14,7 @@ from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, 
 from verify.compare.fit import Data, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
-from verify.compare.sorting import BENDING, rigid_of, sort_list
+from verify.compare.sorting import BENDING, ascends, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.options import Support
@@ -63,8 +63,8 @@ def compare(
         raise InputError(f"modes = {len(shapes.values)} shapes for {len(listed.values)} frequencies: give one for each")
     if shapes is None:
         listed, motions = sort_list(beam, listed)
-        if (np.diff(listed.hertz) < 0.0).any():
-            raise InputError(f"{listed.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
+        if not ascends(beam, listed.hertz):
+            raise InputError(f"{listed.source}: values do not ascend: sort them, or give the shapes of the modes")
     hertz = listed.hertz
     rigid, n = rigid_of(beam, hertz), max(len(hertz), *(listed.numbers or (0,))) + SPARE
     if not hertz[rigid:].all():

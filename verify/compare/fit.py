@@ -171,8 +171,9 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
             progress(f"fault of the list: {FAULTS[kind][0].partition(',')[0]}")
             tested[kind] = _best(data, [one for one in faults if one.kind == kind])
     firsts = [fits[0] for fits in tested.values() if fits]
-    accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
-    best = min(accepted or [plain], key=data.score)
+    accepted = [*filter(data.accepts, firsts)]
+    likely = [one for one in accepted if data.score(one) <= data.score(plain)]
+    best = min(likely or accepted or [plain], key=data.score)  # an unlikely fault agrees, but is no claim
     ranking = _best(data, [best.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in ranking):
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
@@ -189,7 +190,7 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
     close = sorted(filter(data.accepts, close), key=data.score)
-    status = "exact" if exact else "ambiguous" if close else "identified"
+    status = "exact" if exact else "few" if not likely else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
     firsts.sort(key=data.score)

@@ -81,7 +81,7 @@ def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **mo
     if not 0 < len(values) <= MOST:
         raise InputError(f"{source} has {len(values)} frequencies: give 1 to {MOST}")
     array = np.array(values, dtype=float)
-    if more.get("unit") == "rad2/s2":  # rigid motions may have small negative ones
+    if UNITS[more.get("unit", "Hz")][1] > 0:  # rigid motions may have small negative values
         array = np.where(abs(array) < 1e-6 * abs(array).max(), abs(array), array)
     for i, value in enumerate(array.tolist(), start=1):
         if not isfinite(value) or value < 0.0 or (value == 0.0 and more.get("unit") in ("s", "ms")):
@@ -103,7 +103,9 @@ def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList |
     if len(words) == 1 and re.fullmatch(r"\d+,\d+", words[0]):
         raise InputError(f"frequencies = {words[0]}: a decimal comma or two values, write a point or a space")
     if not all(_VALUE.fullmatch(cell) for cell in cells):
-        cells = [cell for word in words for cell in re.split(r"[,;\s]+", word.strip("[]()")) if cell]
+        cells = [cell for word in words for cell in re.split(r"[;\s]+", word.strip("[]()")) if cell]
+        decimal = len(cells) > 1 and all(re.fullmatch(r"\d+,\d+", cell) for cell in cells)
+        cells = [one for cell in cells for one in ([cell.replace(",", ".")] if decimal else cell.split(",")) if one]
     found = [_VALUE.fullmatch(cell) for cell in cells]
     if not cells or not all(found):
         return None
@@ -164,23 +166,22 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
 def _solver_cells(text: str) -> list[str]:
     """Frequencies in Hz as text from a solver's table: a mode number, then among others omega^2, omega, omega / 2 pi.
 
-    So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. Empty without such a table.
+    So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. The first table, empty without one.
     """
-    cells: list[str] = []
+    runs: list[list[str]] = [[]]
     for line in text.splitlines():
         words = list(takewhile(_NUMBER.fullmatch, line.split()))
         values = [abs(float(re.sub("[dD]", "e", word.replace(",", ".")))) for word in words]
         for k in range(1, min(len(values) - 2, 4)):
             square, omega, hertz = values[k : k + 3]
-            if abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega:
-                if values[0] != len(cells) + 1:  # another step
-                    return cells
-                cells.append(words[k + 2].lstrip("-"))
+            fits = abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega
+            if fits or omega == hertz == 0.0:  # zeros of rigid motions, or of coordinates in a table of nodes
+                if values[0] == 1.0:
+                    runs.append([])
+                if values[0] == len(runs[-1]) + 1:
+                    runs[-1].append(words[k + 2].lstrip("-"))
                 break
-            if square < 1e-3 and omega == hertz == 0.0 and values[0] == len(cells) + 1:  # a rigid motion
-                cells.append("0.0")
-                break
-    return cells if len(cells) > 1 else []
+    return next((run for run in runs if any(float(re.sub("[dD]", "e", cell)) for cell in run)), [])
 
 
 def read_shapes(path: Path, length: float) -> ModeShapes:

@@ -69,7 +69,10 @@ def result_of(
     `required`: candidates, modes, and N for 1 % and 0.1 %. `options`: `compare.Options`.
     """
     best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
-    misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (kind in ("missing", "extra"))
+    claimed = fits.status in ("identified", "ambiguous")
+    misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (
+        claimed and kind in ("missing", "extra")
+    )
     faults = [*misread, *warnings]
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
@@ -87,7 +90,6 @@ def result_of(
         summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    claimed = fits.status in ("identified", "ambiguous")
     if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}

@@ -114,7 +114,9 @@ def _frequencies(field: dict[str, Any], chosen: list[bool], source: str) -> Freq
         if len(values) != len(chosen):
             raise InputError(f"{source}: {name!r} has {len(values)} values, {len(chosen)} shapes: give one for each")
         unit = "rad/s" if _RADIANS.search(name) else "Hz"
-        return listed(source, values[chosen].tolist(), unit=unit, declared=True)
+        read = listed(source, values[chosen].tolist(), unit=unit, declared=True)
+        coarse = 0.5 * float(field.get("resolution", [0.0])[0]) / read.values  # a peak lies between two spectral lines
+        return msgspec.structs.replace(read, digits=np.maximum(read.digits, coarse))
     return None
 
 

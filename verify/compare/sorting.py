@@ -43,10 +43,15 @@ def rigid_of(beam: Beam, hertz: Array) -> int:
     return 0
 
 
+def ascends(beam: Beam, hertz: Array) -> bool:
+    """Whether the elastic frequencies ascend; those of rigid-body motions are rounding errors in any order."""
+    return bool((np.diff(hertz[rigid_of(beam, hertz) :]) >= 0.0).all())
+
+
 def sort_list(beam: Beam, listed: FrequencyList) -> tuple[FrequencyList, Motions | None]:
     """The list in the unit of its values, and its motions if they are those of a model in space, else None."""
     tried = [listed, *(msgspec.structs.replace(listed, unit=unit) for unit in UNITS if unit != listed.unit)]
-    tried = [one for one in tried if np.isfinite(one.hertz).all() and (np.diff(one.hertz) >= 0.0).all()]
+    tried = [one for one in tried if np.isfinite(one.hertz).all() and ascends(beam, one.hertz)]
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
     top = int(numbers.max())
     exact = np.log([frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, top) for t in _theories(beam)])
