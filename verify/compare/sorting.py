@@ -115,7 +115,11 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
     low, high = np.log(exact.min(axis=1)), np.log(exact.max(axis=1))
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
-    at = linear_sum_assignment(off + 1e-3 * abs(logs - 0.5 * (low + high)) + 1e3 * (off > BAND))[1]
+    nearest = np.inf
+    for near in (high, 0.5 * (low + high), low):  # all frequencies of a list are of one theory
+        places = linear_sum_assignment(off + 1e-3 * abs(logs - near) + 1e3 * (off > BAND))[1]
+        if (total := abs(logs[:, 0] - near[places]).sum()) < nearest:
+            nearest, at = total, places
     missing = np.delete(np.array([row[0] in planes for row in rows]) & (high < np.log(hertz[-1]) - BAND), at)
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
