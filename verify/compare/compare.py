@@ -17,7 +17,7 @@ from verify.compare.report import Entry, result_of
 from verify.compare.sorting import BENDING, ascends, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
-from verify.options import Support
+from verify.options import THEORIES, Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
 from verify.validation import check_integer
@@ -112,7 +112,7 @@ def compare(
     ]
     required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
     if motions is not None:  # the other motions of a model in space
-        exact = motions.exact[:, int(options.theory == "timoshenko")].tolist()
+        exact = motions.exact[:, THEORIES.index(options.theory)].tolist()
         others = zip(hertz[rigid:].tolist(), exact, motions.modes.tolist(), motions.names, strict=True)
         all_rows = [Entry(i, m + 1, f, of, None, name) for i, (f, of, m, name) in enumerate(others, rigid + 1)]
         rows += [row for row in all_rows if row.motion != BENDING]

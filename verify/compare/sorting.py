@@ -5,6 +5,8 @@ the beam in another.
 """
 
 from itertools import product
+from operator import itemgetter
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -14,6 +16,7 @@ from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.reading import UNITS, FrequencyList
 from verify.errors import InputError
 from verify.exact.closed_forms import rod_frequency_hz
+from verify.options import THEORIES
 from verify.problem.beam import Beam
 
 RIGID = 3e-3
@@ -26,7 +29,7 @@ BENDING, ACROSS = "bending", "bending, width"
 
 
 class Motions(msgspec.Struct, frozen=True, eq=False):
-    """The motion of each elastic entry, its number from 0, (n,), and exact Hz, (n, 2): Euler-Bernoulli, with shear."""
+    """The motion of each elastic entry, its number from 0, (n,), and exact Hz, (n, k), of THEORIES or the first."""
 
     names: tuple[str, ...]
     modes: Indices
@@ -74,7 +77,7 @@ def sort_list(beam: Beam, listed: FrequencyList) -> tuple[FrequencyList, Motions
 def _theories(beam: Beam) -> tuple[str, ...]:
     """Theories of the exact beam for which its properties are known."""
     known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
-    return (EULER, "timoshenko") if known else (EULER,)
+    return THEORIES if known else (EULER,)
 
 
 def second_plane(beam: Beam) -> Beam:
@@ -91,14 +94,11 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
     from scipy.optimize import linear_sum_assignment
 
     planes, top = {BENDING: beam, ACROSS: second_plane(beam)}, hertz[-1] * (1.0 + BAND)
-    rows: list[tuple[str, int, float, float]] = []
+    rows: list[tuple[Any, ...]] = []
+    theories = _theories(beam)
     for name, plane in planes.items():
-        solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in _theories(plane)]
-        rows += [
-            (name, i, float(bare), float(thick))
-            for i, (bare, thick) in enumerate(zip(solved[0], solved[-1], strict=True))
-            if thick < top
-        ]
+        solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in theories]
+        rows += [(name, i, *values) for i, values in enumerate(zip(*solved, strict=True)) if values[-1] < top]
     choices = [{"clamped": (True,), "free": (False,)}.get(support, (True, False)) for support in beam.supports]
     for motion, fixed in product(("torsion", "extension"), product(*choices)):
         for mode in range(len(hertz)):
@@ -108,18 +108,17 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
                 break
             if value > top:
                 break
-            rows.append((motion, mode, value, value))
+            rows.append((motion, mode, *[value] * len(theories)))
     if len(rows) < len(hertz):
         return None
-    exact = np.array([row[2:] for row in rows])
+    exact = np.array([row[2:] for row in rows], dtype=float)
     low, high = np.log(exact.min(axis=1)), np.log(exact.max(axis=1))
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
-    nearest = np.inf
-    for near in (high, 0.5 * (low + high), low):  # all frequencies of a list are of one theory
-        places = linear_sum_assignment(off + 1e-3 * abs(logs - near) + 1e3 * (off > BAND))[1]
-        if (total := abs(logs[:, 0] - near[places]).sum()) < nearest:
-            nearest, at = total, places
+    costs = [abs(logs - near) + 1e3 * (off > BAND) for near in np.log(exact.T)]  # all entries are of one theory
+    at = min(
+        ((cost[pairs].sum(), *pairs) for cost in costs for pairs in [linear_sum_assignment(cost)]), key=itemgetter(0)
+    )[2]
     missing = np.delete(np.array([row[0] in planes for row in rows]) & (high < np.log(hertz[-1]) - BAND), at)
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
