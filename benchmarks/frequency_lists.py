@@ -24,8 +24,8 @@ from tests.reference.closed_lists import pinned_timoshenko, written
 from tests.reference.discrete_beams import rigid_links, varying_beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed
-from verify.compare.sorting import second_plane
 from verify.engines import ENGINES, chain_of
+from verify.engines.description import in_plane
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.options import Support, Theory
@@ -134,7 +134,7 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | 
     for ratio, thickness, pair, theory, n in sizes:
         bar = Beam(length=1.0, width=ratio * thickness, thickness=thickness, youngs_modulus=68e9, density=2700.0,
                    supports=pair)  # fmt: skip
-        planes = [HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in (bar, second_plane(bar))]
+        planes = [HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in (bar, in_plane(bar, "width"))]
         yield "both planes in rad/s", bar, (2.0 * pi * np.sort(np.ravel(planes))[:n]).tolist(), 6, 20, {None}
 
 

@@ -59,12 +59,6 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
     decimals: int = 0
     beam: Beam | None = None
 
-    def applies(self, candidate: Candidate) -> bool:
-        """Whether it is tested with a candidate."""
-        if theory := {"shear": "timoshenko", "constants": EULER}.get(self.kind):
-            return not candidate.sized and candidate.theory == theory
-        return candidate.springs or not self.ends
-
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
@@ -173,7 +167,8 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     firsts = [fits[0] for fits in tested.values() if fits]
     accepted = [*filter(data.accepts, firsts)]
     likely = [one for one in accepted if data.score(one) <= data.score(plain)]
-    best = min(likely or accepted or [plain], key=data.score)  # an unlikely fault agrees, but is no claim
+    unlikely = [one for one in accepted if one.fault.kind not in EXACTS]  # agree, but are no claim
+    best = min(likely or unlikely or [plain], key=data.score)
     ranking = _best(data, [best.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in ranking):
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
@@ -242,14 +237,10 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
-    by = {
-        one.candidate: one for one in refined
-    }  # joint rules at steps that agree with half links in series are left out
-    refined = [
-        one
-        for one in refined
-        if not _same(one, twin := by.get(replace(one.candidate, joints="series"), one)) or one is twin
-    ]
+    by = {one.candidate: one for one in refined}
+    twins = [(one, by.get(replace(one.candidate, joints="series"), one)) for one in refined]
+    # joint rules at steps that agree with half links in series are left out
+    refined = [one for one, twin in twins if one is twin or not _same(one, twin)]
     equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
     return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
@@ -278,7 +269,9 @@ def _by_hand(data: Data, fault: Fault) -> Array:
 
 def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[int | None] = ()) -> Fit | None:
     """The fit at the best of `counts` (default: interpolated N); None if the fault does not apply."""
-    if not fault.applies(candidate):
+    theory = {"shear": "timoshenko", "constants": EULER}.get(fault.kind)
+    springs = candidate.packaged and candidate.attachment == "reciprocal" and candidate.wall != "welded"
+    if (fault.ends and not springs) or (theory and (candidate.sized or candidate.theory != theory)):
         return None
     beam = fault.beam or data.beam
     if not candidate.sized:

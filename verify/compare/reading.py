@@ -112,12 +112,10 @@ def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList |
     units = {one[2] for one in found if one and one[2]}
     known = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
     if units and known is None:
-        raise InputError(
-            f"frequencies = {shown(' '.join(words))}: units {', '.join(sorted(units))}, give one of --unit"
-        )
-    numbers = [one[1] for one in found if one]
-    chosen = unit or known
-    values = [float(re.sub("[dD]", "e", number)) for number in numbers]
+        text = f"{shown(' '.join(words))}: units {', '.join(sorted(units))}"
+        raise InputError(f"frequencies = {text}, give one of --unit")
+    numbers, chosen = [one[1] for one in found if one], unit or known
+    values = _numbers(numbers, "frequencies")
     return listed("frequencies", values, numbers, unit=chosen or "Hz", declared=chosen is not None)
 
 
@@ -131,7 +129,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     source = f"frequencies file {str(path)!r}"
     text = _text(path, source)
     if cells := _solver_cells(text):
-        return listed(source, [_float(cell, source, i) for i, cell in enumerate(cells, 1)], cells, declared=True)
+        return listed(source, _numbers(cells, source), cells, declared=True)
     lines = [line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#%!"]
     if brackets := re.match(r"\s*(?:\w+\s*=\s*)?(?:(?:np\.)?array\()?[\[(](.*)[\])]", text, re.DOTALL):
         lines = re.sub(r"np\.float64\(|[()\[\]]", " ", brackets[1]).replace(",", " ").split()
@@ -141,7 +139,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     if (brackets or named) and (read := read_words(lines, unit)):
         return msgspec.structs.replace(read, source=source)
     head, rows = _rows(text, source)
-    table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
+    table = np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
     numbered = next((k for k, name in enumerate(head) if _MODE.fullmatch(name)), None)
     if not head and table.shape[1] == 2 and not (table[:, 0] % 1.0).any() and (np.diff(table[:, 0]) > 0.0).all():
         numbered = 0
@@ -153,14 +151,14 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     if len(columns) != 1:
         raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
     column, numbers = columns[0], None
+    chosen = unit or units.get(column)
     if numbered is not None:
         order = table[:, numbered]
         if (order % 1.0).any() or not (np.diff(order) > 0.0).all() or not 0 <= order[0] <= order[-1] <= MOST:
             raise InputError(f"{source}: mode numbers {order[:5].tolist()} do not count upwards: number them from 1")
         numbers = tuple(int(number) + (order[0] == 0) for number in order)
-    cells, chosen = [row[column] for row in rows], unit or units.get(column)
     more = {"unit": chosen or "Hz", "declared": chosen is not None, "numbers": numbers}
-    return listed(source, table[:, column].tolist(), cells, **more)
+    return listed(source, table[:, column].tolist(), [row[column] for row in rows], **more)
 
 
 def _solver_cells(text: str) -> list[str]:
@@ -171,7 +169,7 @@ def _solver_cells(text: str) -> list[str]:
     runs: list[list[str]] = [[]]
     for line in text.splitlines():
         words = list(takewhile(_NUMBER.fullmatch, line.split()))
-        values = [abs(float(re.sub("[dD]", "e", word.replace(",", ".")))) for word in words]
+        values = [abs(value) for value in _numbers(words, "")]
         for k in range(1, min(len(values) - 2, 4)):
             square, omega, hertz = values[k : k + 3]
             fits = abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega
@@ -181,14 +179,14 @@ def _solver_cells(text: str) -> list[str]:
                 if values[0] == len(runs[-1]) + 1:
                     runs[-1].append(words[k + 2].lstrip("-"))
                 break
-    return next((run for run in runs if any(float(re.sub("[dD]", "e", cell)) for cell in run)), [])
+    return next((run for run in runs if any(_numbers(run, ""))), [])
 
 
 def read_shapes(path: Path, length: float) -> ModeShapes:
     """Mode shapes in a text file: x in metres, then one column for each mode. Raises InputError."""
     source = f"modes file {str(path)!r}"
     rows = _rows(_text(path, source), source)[1]
-    table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
+    table = np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
     return checked_shapes(ModeShapes(x=table[:, 0], values=table[:, 1:].T), length, source)
 
 
@@ -246,14 +244,14 @@ def _rows(text: str, source: str) -> tuple[list[str], list[list[str]]]:
     rows, head = _cells([line for line in lines if line[0] not in "#%!"]), _cells(comments[-1:])
     if rows and not any(_NUMBER.fullmatch(cell) for cell in rows[0]):
         head, rows = rows[:1], rows[1:]
-    if not rows or min(map(len, rows)) != max(map(len, rows)):
-        widths = [len(row) for row in rows]
-        odd = next((i for i, width in enumerate(widths) if width != max(widths, key=widths.count)), None)
-        if odd is None:
-            raise InputError(f"{source} has 0 rows of numbers: give one or more")
-        text = shown(" ".join(rows[odd]))
-        raise InputError(f"{source}, row {odd + 1} has other columns than most of the rows, cut it: {text}")
-    words, width = (head[0] if head else []), len(rows[0])
+    if not rows:
+        raise InputError(f"{source} has 0 rows of numbers: give one or more")
+    width = max(widths := [len(row) for row in rows], key=widths.count)
+    for i, row in enumerate(rows, start=1):
+        if len(row) != width:
+            text = shown(" ".join(row))
+            raise InputError(f"{source}, row {i} has other columns than most of the rows, cut it: {text}")
+    words = head[0] if head else []
     if len(words) != width:  # a header of words between spaces
         words = ["mode", " ".join(words)][-width:] if words and width <= 2 else []
     return words, rows
@@ -269,12 +267,13 @@ def _cells(lines: list[str]) -> list[list[str]]:
     return [[cell.replace(",", ".") if _NUMBER.fullmatch(cell) else cell for cell in row] for row in rows]
 
 
-def _float(cell: str, source: str, row: int) -> float:
-    """A number in Fortran's or C's notation. Raises InputError."""
-    try:
-        return float(re.sub("[dD]", "e", cell))
-    except ValueError:
-        raise InputError(f"{source}, row {row}: {shown(cell)} is not a number: correct it or leave it out") from None
+def _numbers(cells: Sequence[str], source: str, row: int | None = None) -> list[float]:
+    """Numbers in Fortran's or C's notation, one for each row from 1, or all of `row`. Raises InputError."""
+    for i, cell in enumerate(cells, start=1):
+        if not _NUMBER.fullmatch(cell):
+            text = f"row {row or i}: {shown(cell)} is not a number"
+            raise InputError(f"{source}, {text}: correct it or leave it out")
+    return [float(re.sub("[dD]", "e", cell.replace(",", "."))) for cell in cells]
 
 
 def _last_digit(cell: str, value: float, most: int) -> float:

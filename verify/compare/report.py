@@ -70,10 +70,8 @@ def result_of(
     """
     best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
     claimed = fits.status in ("identified", "ambiguous")
-    misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (
-        claimed and kind in ("missing", "extra")
-    )
-    faults = [*misread, *warnings]
+    misread = claimed and kind in ("missing", "extra")
+    faults = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * misread + warnings
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
     off, passed = abs(worst.error), abs(worst.error) <= within and not faults

@@ -28,12 +28,19 @@ MOST_IN_SPACE = 100
 BENDING, ACROSS = "bending", "bending, width"
 
 
-class Motions(msgspec.Struct, frozen=True, eq=False):
-    """The motion of each elastic entry, its number from 0, (n,), and exact Hz, (n, k), of THEORIES or the first."""
+class Sorted(msgspec.Struct, frozen=True, eq=False):
+    """Elastic entries of a list, (k,) from 0, in the unit of its values, after the `rigid` leading ones.
 
-    names: tuple[str, ...]
+    `motions` (k,), their `modes` (k,) from 0 and exact frequencies (k,), Hz; MAC (k,) of entries known by shape.
+    """
+
+    listed: FrequencyList
+    rigid: int
+    entries: Indices
+    motions: tuple[str, ...]
     modes: Indices
     exact: Array
+    macs: Array | None = None
 
 
 def rigid_of(beam: Beam, hertz: Array) -> int:
@@ -46,32 +53,41 @@ def rigid_of(beam: Beam, hertz: Array) -> int:
     return 0
 
 
-def ascends(beam: Beam, hertz: Array) -> bool:
-    """Whether the elastic frequencies ascend; those of rigid-body motions are rounding errors in any order."""
-    return bool((np.diff(hertz[rigid_of(beam, hertz) :]) >= 0.0).all())
+def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
+    """The elastic entries by their order, as bending modes or motions in space; exact frequencies by the theory.
 
-
-def sort_list(beam: Beam, listed: FrequencyList) -> tuple[FrequencyList, Motions | None]:
-    """The list in the unit of its values, and its motions if they are those of a model in space, else None."""
-    tried = [listed, *(msgspec.structs.replace(listed, unit=unit) for unit in UNITS if unit != listed.unit)]
-    tried = [one for one in tried if np.isfinite(one.hertz).all() and ascends(beam, one.hertz)]
+    Raises InputError for frequencies that do not ascend and for a list without an elastic one.
+    """
+    tried: list[tuple[FrequencyList, int]] = []
+    for unit in dict.fromkeys((listed.unit, *UNITS)):
+        one = msgspec.structs.replace(listed, unit=unit)
+        rigid = rigid_of(beam, one.hertz) if np.isfinite(one.hertz).all() else 0
+        elastic = one.hertz[rigid:]  # those of rigid-body motions are rounding errors in any order
+        if np.isfinite(elastic).all() and elastic.all() and (np.diff(elastic) >= 0.0).all():
+            tried.append((one, rigid))
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
-    top = int(numbers.max())
-    exact = np.log([frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, top) for t in _theories(beam)])
-    for one in tried:
-        rigid = rigid_of(beam, one.hertz)
-        if not one.hertz[rigid:].all():
-            continue
+    theories = _theories(beam)
+    solved = [frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, int(numbers.max())) for t in theories]
+    exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(numbers.max()))
+
+    def in_plane(one: FrequencyList, rigid: int) -> Sorted:
         modes = (numbers - 1 - rigid if numbers[0] == 1 else numbers - 1)[rigid:]
-        logs = np.log(one.hertz[rigid:])
-        off = np.maximum(np.maximum(exact.min(axis=0)[modes] - logs, logs - exact.max(axis=0)[modes]), 0.0)
-        if off.max() < LOOSE and (one is listed or off[: (len(off) + 1) // 2].max() < CLOSE):
-            return one, None
-    for one in tried if len(listed.values) <= MOST_IN_SPACE else ():
-        rigid = rigid_of(beam, one.hertz)
-        if one.hertz[rigid:].all() and (motions := _motions(beam, one.hertz[rigid:])):
-            return one, motions
-    return listed, None
+        return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(modes), modes, exact[modes])
+
+    for one, rigid in tried:
+        plane, logs = in_plane(one, rigid), np.log(one.hertz[rigid:])
+        low, high = (np.log(bound(solved, axis=0))[plane.modes] for bound in (np.min, np.max))
+        off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
+        if off.max() < LOOSE and (one.unit == listed.unit or off[: (len(off) + 1) // 2].max() < CLOSE):
+            return plane
+    for one, rigid in tried if len(numbers) <= MOST_IN_SPACE else ():
+        if motions := _motions(beam, one.hertz[rigid:], theories.index(theory)):
+            return Sorted(one, rigid, np.arange(rigid, len(numbers)), *motions)
+    if tried and tried[0][0].unit == listed.unit:
+        return in_plane(*tried[0])
+    if listed.hertz[rigid_of(beam, listed.hertz) :].all():
+        raise InputError(f"{listed.source}: values do not ascend: sort them, or give the shapes of the modes")
+    raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
 
 
 def _theories(beam: Beam) -> tuple[str, ...]:
@@ -80,20 +96,13 @@ def _theories(beam: Beam) -> tuple[str, ...]:
     return THEORIES if known else (EULER,)
 
 
-def second_plane(beam: Beam) -> Beam:
-    """The beam that bends across its width: width and thickness exchanged; other sections are alike in both planes."""
-    if not (beam.width and beam.thickness):
-        return beam
-    turned = msgspec.structs.replace
-    sections = tuple(turned(one, width=one.thickness, thickness=one.width) for one in beam.section)
-    return turned(beam, width=beam.thickness, thickness=beam.width, section=sections)
-
-
-def _motions(beam: Beam, hertz: Array) -> Motions | None:
-    """Motions of the elastic frequencies (n,), Hz, if each is within BAND of one and no bending mode is missing."""
+def _motions(beam: Beam, hertz: Array, theory: int) -> tuple[tuple[str, ...], Indices, Array] | None:
+    """Motions, modes and exact Hz of elastic frequencies (n,), each within BAND, without a missing bending mode."""
     from scipy.optimize import linear_sum_assignment
 
-    planes, top = {BENDING: beam, ACROSS: second_plane(beam)}, hertz[-1] * (1.0 + BAND)
+    from verify.engines.description import in_plane
+
+    planes, top = {BENDING: beam, ACROSS: in_plane(beam, "width")}, hertz[-1] * (1.0 + BAND)
     rows: list[tuple[Any, ...]] = []
     theories = _theories(beam)
     for name, plane in planes.items():
@@ -123,4 +132,4 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
         return None
-    return Motions(names, np.array([rows[i][1] for i in at]), exact[at])
+    return names, np.array([rows[i][1] for i in at]), exact[at, theory]
