@@ -127,10 +127,6 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether all differences are within the digits; the last digit may be off by one."""
         return bool((abs(np.log1p(fit.differences)) <= AGREED + 1.5 * self.rounding[fit.fault.entries]).all())
 
-    def near(self, fit: Fit, best: Fit) -> bool:
-        """Whether a fit is within the factor of ambiguity of the best."""
-        return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
-
 
 class Identification(msgspec.Struct, frozen=True, eq=False):
     """Result of an identification; `status`: identified, ambiguous, exact (no discretisation), few or unknown.
@@ -174,14 +170,14 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
     best = ranking[0]
     every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
-    near = [one for one in every if data.near(one, best) and data.agrees(one)]
+    most = AMBIGUOUS * hypot(best.rms, data.floor)
+    near = [one for one in every if hypot(one.rms, data.floor) <= most and data.agrees(one)]
     exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
     if exact:
         best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
         ranking = [best, *(one for one in ranking if one is not best)]
     equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
-    most = data.fitted(best) + 1
-    close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
+    close = [o for o in near if o is not best and o not in equal and data.fitted(o) <= data.fitted(best) + 1]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
     close = sorted(filter(data.accepts, close), key=data.score)
@@ -283,8 +279,8 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[in
         table = np.array([_logs(beam, candidate, size, data.n_modes) for size in counts])
     else:
         sizes, table = spectrum(beam, candidate, data.n_modes)
-        counts, table = sizes[sizes <= SEARCHED].tolist(), table[sizes <= SEARCHED]
-    raw = data.logs[fault.entries] - table[:, fault.modes]
+        counts = sizes[sizes <= SEARCHED].tolist()
+    raw = data.logs[fault.entries] - table[: len(counts), fault.modes]
     parameters, removed = np.ones(len(raw)), np.zeros_like(raw)
     if fault.ends or fault.kind == "shear":
         try:

@@ -66,7 +66,8 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
         if np.isfinite(elastic).all() and elastic.all() and (np.diff(elastic) >= 0.0).all():
             tried.append((one, rigid))
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
-    theories = _theories(beam)
+    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
+    theories = THEORIES if known else (EULER,)
     solved = [frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, int(numbers.max())) for t in theories]
     exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(numbers.max()))
 
@@ -81,8 +82,9 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
         if off.max() < LOOSE and (one.unit == listed.unit or off[: (len(off) + 1) // 2].max() < CLOSE):
             return plane
     for one, rigid in tried if len(numbers) <= MOST_IN_SPACE else ():
-        if motions := _motions(beam, one.hertz[rigid:], theories.index(theory)):
-            return Sorted(one, rigid, np.arange(rigid, len(numbers)), *motions)
+        if motions := _motions(beam, one.hertz[rigid:], theories):
+            names, modes, values = motions
+            return Sorted(one, rigid, np.arange(rigid, len(numbers)), names, modes, values[:, theories.index(theory)])
     if tried and tried[0][0].unit == listed.unit:
         return in_plane(*tried[0])
     if listed.hertz[rigid_of(beam, listed.hertz) :].all():
@@ -90,21 +92,17 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
     raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
 
 
-def _theories(beam: Beam) -> tuple[str, ...]:
-    """Theories of the exact beam for which its properties are known."""
-    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
-    return THEORIES if known else (EULER,)
+def _motions(beam: Beam, hertz: Array, theories: tuple[str, ...]) -> tuple[tuple[str, ...], Indices, Array] | None:
+    """Motions, modes (n,) and exact Hz (n, theories) of elastic frequencies (n,); None if they are not in space.
 
-
-def _motions(beam: Beam, hertz: Array, theory: int) -> tuple[tuple[str, ...], Indices, Array] | None:
-    """Motions, modes and exact Hz of elastic frequencies (n,), each within BAND, without a missing bending mode."""
+    Each is within BAND of an exact one, no bending mode is missing.
+    """
     from scipy.optimize import linear_sum_assignment
 
     from verify.engines.description import in_plane
 
     planes, top = {BENDING: beam, ACROSS: in_plane(beam, "width")}, hertz[-1] * (1.0 + BAND)
     rows: list[tuple[Any, ...]] = []
-    theories = _theories(beam)
     for name, plane in planes.items():
         solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in theories]
         rows += [(name, i, *values) for i, values in enumerate(zip(*solved, strict=True)) if values[-1] < top]
@@ -132,4 +130,4 @@ def _motions(beam: Beam, hertz: Array, theory: int) -> tuple[tuple[str, ...], In
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
         return None
-    return names, np.array([rows[i][1] for i in at]), exact[at, theory]
+    return names, np.array([rows[i][1] for i in at]), exact[at]
