@@ -30,6 +30,7 @@ from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.options import Support, Theory
 from verify.problem.beam import Beam
+from verify.segment_model import SegmentModel
 
 PAIRS: tuple[tuple[Support, Support], ...]
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "rayleigh", "timoshenko")
@@ -134,8 +135,12 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | 
     for ratio, thickness, pair, theory, n in sizes:
         bar = Beam(length=1.0, width=ratio * thickness, thickness=thickness, youngs_modulus=68e9, density=2700.0,
                    supports=pair)  # fmt: skip
-        planes = [HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in (bar, in_plane(bar, "width"))]
-        yield "both planes in rad/s", bar, (2.0 * pi * np.sort(np.ravel(planes))[:n]).tolist(), 6, 20, {None}
+        planes = bar, in_plane(bar, "width")
+        hertz = [HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in planes]
+        yield "both planes in rad/s", bar, (2.0 * pi * np.sort(np.ravel(hertz))[:n]).tolist(), 6, 20, {None}
+        if "clamped" in pair and theory == THEORIES[0]:
+            hertz = [SegmentModel(one, 20, wall="full").modes(n).frequencies_hz for one in planes]
+            yield "both planes, EI/l at the wall", bar, np.sort(np.ravel(hertz))[:n].tolist(), 6, 20, {"full"}
 
 
 def judge(step: int) -> None:

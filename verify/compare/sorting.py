@@ -23,8 +23,8 @@ RIGID = 3e-3
 """Fraction of the next frequency below which leading ones are rigid-body motions, unless the beam has such a gap."""
 LOOSE, CLOSE, BAND = 0.25, 0.05, 0.03
 """Largest log differences from the exact beam: of all modes, of the lower half in another unit, of motions in space."""
-MOST_IN_SPACE = 100
-"""Largest number of entries that are sorted by their motion."""
+MOST_IN_SPACE, FEWEST_SCALED = 100, 5
+"""Numbers of entries that are sorted by their motion: largest, and least with a common factor."""
 BENDING, ACROSS = "bending", "bending, width"
 
 
@@ -58,6 +58,8 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
 
     Raises InputError for frequencies that do not ascend and for a list without an elastic one.
     """
+    from verify.engines.description import in_plane
+
     tried: list[tuple[FrequencyList, int]] = []
     for unit in dict.fromkeys((listed.unit, *UNITS)):
         one = msgspec.structs.replace(listed, unit=unit)
@@ -71,37 +73,43 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
     solved = [frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, int(numbers.max())) for t in theories]
     exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(numbers.max()))
 
-    def in_plane(one: FrequencyList, rigid: int) -> Sorted:
+    def by_order(one: FrequencyList, rigid: int) -> Sorted:
         modes = (numbers - 1 - rigid if numbers[0] == 1 else numbers - 1)[rigid:]
         return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(modes), modes, exact[modes])
 
     for one, rigid in tried:
-        plane, logs = in_plane(one, rigid), np.log(one.hertz[rigid:])
+        plane, logs = by_order(one, rigid), np.log(one.hertz[rigid:])
         low, high = (np.log(bound(solved, axis=0))[plane.modes] for bound in (np.min, np.max))
         off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
         if off.max() < LOOSE and (one.unit == listed.unit or off[: (len(off) + 1) // 2].max() < CLOSE):
             return plane
-    for one, rigid in tried if len(numbers) <= MOST_IN_SPACE else ():
-        if motions := _motions(beam, one.hertz[rigid:], theories):
+    planes = {BENDING: beam, ACROSS: in_plane(beam, "width")}
+    lowest = min(frequencies_hz(Candidate(model=EXACT), plane, None, 1)[0] for plane in planes.values())
+    for scaled, (one, rigid) in product((False, True), tried if len(numbers) <= MOST_IN_SPACE else ()):
+        elastic = one.hertz[rigid:]  # first as they are, then with a common factor, for example of another modulus
+        factor = elastic[0] / lowest if scaled else 1.0
+        if abs(np.log(factor)) > LOOSE or (scaled and len(elastic) < FEWEST_SCALED):
+            continue
+        if motions := _motions(beam, planes, elastic / factor, factor, theories):
             names, modes, values = motions
             return Sorted(one, rigid, np.arange(rigid, len(numbers)), names, modes, values[:, theories.index(theory)])
     if tried and tried[0][0].unit == listed.unit:
-        return in_plane(*tried[0])
+        return by_order(*tried[0])
     if listed.hertz[rigid_of(beam, listed.hertz) :].all():
         raise InputError(f"{listed.source}: values do not ascend: sort them, or give the shapes of the modes")
     raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
 
 
-def _motions(beam: Beam, hertz: Array, theories: tuple[str, ...]) -> tuple[tuple[str, ...], Indices, Array] | None:
+def _motions(
+    beam: Beam, planes: dict[str, Beam], hertz: Array, factor: float, theories: tuple[str, ...]
+) -> tuple[tuple[str, ...], Indices, Array] | None:
     """Motions, modes (n,) and exact Hz (n, theories) of elastic frequencies (n,); None if they are not in space.
 
-    Each is within BAND of an exact one, no bending mode is missing.
+    Each is within BAND of an exact one, no bending mode is missing. `hertz` are without their common factor.
     """
     from scipy.optimize import linear_sum_assignment
 
-    from verify.engines.description import in_plane
-
-    planes, top = {BENDING: beam, ACROSS: in_plane(beam, "width")}, hertz[-1] * (1.0 + BAND)
+    top = hertz[-1] * (1.0 + BAND)
     rows: list[tuple[Any, ...]] = []
     for name, plane in planes.items():
         solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in theories]
@@ -113,20 +121,22 @@ def _motions(beam: Beam, hertz: Array, theories: tuple[str, ...]) -> tuple[tuple
                 value = rod_frequency_hz(beam, mode + 1, motion, (fixed[0], fixed[1]))
             except InputError:  # stepped, with attachments, or without shape
                 break
-            if value > top:
+            if value > top * max(factor, 1.0 / factor):
                 break
             rows.append((motion, mode, *[value] * len(theories)))
     if len(rows) < len(hertz):
         return None
     exact = np.array([row[2:] for row in rows], dtype=float)
-    low, high = np.log(exact.min(axis=1)), np.log(exact.max(axis=1))
+    bends = np.array([row[0] in planes for row in rows])
+    apart = np.where(bends, 0.0, -np.log(factor))  # other motions have the factor, or have it not: a wrong wall joint
+    low, high = np.log(exact.min(axis=1)) + np.minimum(apart, 0.0), np.log(exact.max(axis=1)) + np.maximum(apart, 0.0)
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
     costs = [abs(logs - near) + 1e3 * (off > BAND) for near in np.log(exact.T)]  # all entries are of one theory
     at = min(
         ((cost[pairs].sum(), *pairs) for cost in costs for pairs in [linear_sum_assignment(cost)]), key=itemgetter(0)
     )[2]
-    missing = np.delete(np.array([row[0] in planes for row in rows]) & (high < np.log(hertz[-1]) - BAND), at)
+    missing = np.delete(bends & (high < np.log(hertz[-1]) - BAND), at)
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
         return None
