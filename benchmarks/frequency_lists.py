@@ -136,11 +136,11 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | 
         bar = Beam(length=1.0, width=ratio * thickness, thickness=thickness, youngs_modulus=68e9, density=2700.0,
                    supports=pair)  # fmt: skip
         planes = bar, in_plane(bar, "width")
-        hertz = [HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in planes]
-        yield "both planes in rad/s", bar, (2.0 * pi * np.sort(np.ravel(hertz))[:n]).tolist(), 6, 20, {None}
+        both = np.ravel([HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in planes])
+        yield "both planes in rad/s", bar, (2.0 * pi * np.sort(both)[:n]).tolist(), 6, 20, {None}
         if "clamped" in pair and theory == THEORIES[0]:
-            hertz = [SegmentModel(one, 20, wall="full").modes(n).frequencies_hz for one in planes]
-            yield "both planes, EI/l at the wall", bar, np.sort(np.ravel(hertz))[:n].tolist(), 6, 20, {"full"}
+            both = np.ravel([SegmentModel(one, 20, wall="full").modes(n).frequencies_hz for one in planes])
+            yield "both planes, EI/l at the wall", bar, np.sort(both)[:n].tolist(), 6, 20, {"full"}
 
 
 def judge(step: int) -> None:

@@ -163,7 +163,8 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     firsts = [fits[0] for fits in tested.values() if fits]
     accepted = [*filter(data.accepts, firsts)]
     likely = [one for one in accepted if data.score(one) <= data.score(plain)]
-    unlikely = [one for one in accepted if one.fault.kind not in EXACTS]  # agree, but are no claim
+    exact = [one for fits in tested.values() for one in fits if not one.candidate.sized and one.fault.kind in EXACTS]
+    unlikely = [] if any(map(data.agrees, exact)) else accepted  # an unlikely fault agrees, but is no claim
     best = min(likely or unlikely or [plain], key=data.score)
     ranking = _best(data, [best.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in ranking):
