@@ -132,7 +132,8 @@ def _motions(
     low, high = np.log(exact.min(axis=1)) + np.minimum(apart, 0.0), np.log(exact.max(axis=1)) + np.maximum(apart, 0.0)
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
-    costs = [abs(logs - near) + 1e3 * (off > BAND) for near in np.log(exact.T)]  # all entries are of one theory
+    # all entries are of one theory; only motions other than bending may be missing
+    costs = [abs(logs - near) + 1e3 * (off > BAND) + BAND * ~bends for near in np.log(exact.T)]
     at = min(
         ((cost[pairs].sum(), *pairs) for cost in costs for pairs in [linear_sum_assignment(cost)]), key=itemgetter(0)
     )[2]
