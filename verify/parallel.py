@@ -1,15 +1,128 @@
-"""Parallel evaluation in several processes, with the results of a serial one in the same order."""
+"""Parallel evaluation by an executor: processes of this machine, or the workers of a dask cluster.
+
+Results are those of a serial evaluation, in the same order.
+"""
 
 import os
 import sys
-from collections.abc import Callable, Iterable
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor
+from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
+from typing import Any, TypeVar
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
+CLUSTER: ContextVar[Executor | None] = ContextVar("cluster", default=None)
+"""Executor of the cluster inside `with cluster(...)`."""
+PATIENCE = 30.0
+"""Time to reach a scheduler and its first worker, s."""
+
+
+@contextmanager
+def cluster(scheduler: str | None = None, local_cluster: int | None = None) -> Iterator[None]:
+    """Inside the context `workers` are those of a dask cluster, and a task whose worker dies runs again on another.
+
+    `scheduler` is the address of a running one, tcp://host:8786; `local_cluster` starts that many processes on this
+    machine; with neither `workers` are processes as outside. Raises InputError where dask.distributed is not installed,
+    the scheduler does not respond or has no worker, or a worker has other versions, which compute other digits.
+    """
+    if not scheduler and not local_cluster:
+        yield
+        return
+    if scheduler and local_cluster:
+        raise InputError(f"scheduler = {scheduler!r} and local_cluster = {local_cluster}: give one of the two")
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise InputError(
+            "dask.distributed is not installed: pip install 'fem-segment-verify[cluster]', or leave --scheduler and "
+            "--local-cluster out"
+        ) from None
+    with ExitStack() as stack:
+        where: Any = scheduler
+        if local_cluster:
+            options: Any = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
+            where = stack.enter_context(LocalCluster(n_workers=local_cluster, **options))
+        try:
+            client = stack.enter_context(Client(where, timeout=PATIENCE, set_as_default=False))
+            client.wait_for_workers(1, timeout=PATIENCE)
+            theirs = client.run(versions)
+        except (OSError, ValueError, TypeError, ImportError) as error:
+            raise InputError(
+                f"scheduler = {shown(scheduler)} has no usable worker ({error or 'no response'}): start `dask "
+                "scheduler` and `dask worker` with verify installed, or correct the address"
+            ) from None
+        for worker, found in theirs.items():
+            for name, own in versions().items():
+                if found.get(name) != own:
+                    raise InputError(f"worker {worker} has {name} {found.get(name)}, not {own}: install the same there")
+        token = CLUSTER.set(client.get_executor(pure=False))
+        try:
+            yield
+        finally:
+            CLUSTER.reset(token)
+
+
+@contextmanager
+def workers(most: int, processes: int | None = None) -> Iterator[Executor | None]:
+    """An executor for `most` items at a time: the cluster's, else of `processes` (default: VERIFY_JOBS, 1 unless set).
+
+    None where one process is enough. Raises InputError unless VERIFY_JOBS is a positive integer.
+    """
+    text = str(processes or os.environ.get(VARIABLE, "") or 1)
+    if not (text.isascii() and text.isdigit() and int(text)):
+        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
+    remote, n = CLUSTER.get(), min(int(text), most)
+    if remote is not None or n < 2:
+        yield remote
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
+    pool = ProcessPoolExecutor(n, mp_context=get_context("fork" if sys.platform == "linux" else "spawn"))
+    complete = False
+    try:
+        yield pool
+        complete = True
+    finally:
+        pool.shutdown(wait=complete, cancel_futures=True)
+
+
+def completed(
+    function: Callable[[Item], Result], items: Iterable[Item], executor: Executor | None, *, first_here: bool = False
+) -> Iterator[tuple[int, Result]]:
+    """(index, result) of each item as it completes. Function and items must be picklable unless `executor` is None.
+
+    With `first_here` the first item runs in this process, so that forked workers inherit what it compiles. Raises the
+    error of the first item that fails, pending items are cancelled; and InputError where a worker process dies.
+    """
+    todo = list(items)
+    own = len(todo) if executor is None else int(first_here and executor is not CLUSTER.get())
+    for i, item in enumerate(todo[:own]):
+        yield i, function(item)
+    if executor is None or own == len(todo):
+        return
+    from concurrent.futures import as_completed
+
+    futures = {executor.submit(function, item): i for i, item in enumerate(todo[own:], own)}
+    try:
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    except Exception as error:
+        if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
+            raise InputError(
+                "a worker process was killed, by the system where memory is short: run again with fewer processes "
+                f"({VARIABLE}), a sweep --to a file then continues"
+            ) from None
+        raise
+    finally:
+        for future in futures:
+            future.cancel()
 
 
 def map_processes(
@@ -18,37 +131,23 @@ def map_processes(
     progress: Callable[[int], None] = lambda done: None,
     max_workers: int | None = None,
 ) -> list[Result]:
-    """`[function(item) for item in items]` in `max_workers` processes; default: VERIFY_JOBS.
+    """`[function(item) for item in items]` by `workers`; `progress` is called with the index of each that completes.
 
-    `progress` is called with the index of each item that completes. The first item runs in this process, so that
-    workers inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork.
-    Raises the error of the first item that fails, pending items are cancelled; and InputError unless VERIFY_JOBS is a
-    positive integer.
+    The first item runs in this process. Raises what `workers` and `completed` raise.
     """
-    text = str(max_workers or os.environ.get(VARIABLE, "") or 1)
-    if not (text.isascii() and text.isdigit() and int(text)):
-        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
-    todo = list(items)
-    workers = min(int(text), len(todo) - 1)
-    alone = len(todo) if workers < 2 else 1
-    results = []
-    for i, item in enumerate(todo[:alone]):
-        results.append(function(item))
-        progress(i)
-    if alone == len(todo):
-        return results
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
+    todo, results = list(items), dict[int, Result]()
+    with workers(len(todo) - 1, max_workers) as executor:
+        for i, result in completed(function, todo, executor, first_here=True):
+            results[i] = result
+            progress(i)
+    return [results[i] for i in range(len(todo))]
 
-    # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
-    context = get_context("fork" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        futures = {pool.submit(function, item): i for i, item in enumerate(todo[1:], 1)}
-        try:
-            for future in as_completed(futures):
-                future.result()
-                progress(futures[future])
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return results + [future.result() for future in futures]
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages on which the digits of a result depend."""
+    from importlib.metadata import version
+
+    from verify import __version__
+
+    packages = {name: version(name) for name in ("numpy", "scipy", "numba", "scikit-fem")}
+    return {"verify": __version__, "Python": ".".join(map(str, sys.version_info[:3]))} | packages
