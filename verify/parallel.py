@@ -67,6 +67,11 @@ def cluster(scheduler: str | None = None, local_cluster: int | None = None) -> I
             CLUSTER.reset(token)
 
 
+def cores() -> int | None:
+    """VERIFY_JOBS where it is set (None), else the number of cores: for `workers` of what takes long."""
+    return None if os.environ.get(VARIABLE) else os.cpu_count()
+
+
 @contextmanager
 def workers(most: int, processes: int | None = None) -> Iterator[Executor | None]:
     """An executor for `most` items at a time: the cluster's, else of `processes` (default: VERIFY_JOBS, 1 unless set).

@@ -40,7 +40,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         raise NotImplementedError
 
 
-OWN = ("spectrum", "convergence", "wave", "motion", "motor", "claims", "sweep")
+OWN = ("spectrum", "convergence", "wave", "motion", "motor", "claims", "sweep", "optimise", "sensitivity")
 STUDIES: Registry[type[Study]] = Registry(
     "study",
     "verify.studies",

@@ -26,7 +26,7 @@ from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
 from verify.files import appending, exists, write_whole
 from verify.linear.registry import EXACT, MODELS
-from verify.parallel import VARIABLE, completed, versions, workers
+from verify.parallel import completed, cores, versions, workers
 from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.load import scene_from
@@ -94,7 +94,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         tasks = [(tables, self, combinations[i], i) for i in todo]
         with (
             appending(file or Path(os.devnull), "--to") as append,
-            workers(len(todo) - 1, None if os.environ.get(VARIABLE) else os.cpu_count()) as executor,
+            workers(len(todo) - 1, cores()) as executor,
         ):
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
                 append(line)
@@ -270,6 +270,16 @@ def scene_with(tables: dict[str, Any], values: Mapping[str, Any]) -> "Scene":
         for key in keys.split(","):
             tables = _put(tables, key.strip().split("."), keys, value)
     return scene_from(tables)
+
+
+def value_at(tables: dict[str, Any], keys: str, field: str) -> Any:
+    """The value at the first of several keys, for * of the first entry. Raises InputError for an unknown key."""
+    for key in keys.split(","):
+        _put(tables, key.strip().split("."), f"{field} {keys}", None)
+    here: Any = tables
+    for step in keys.split(",")[0].strip().split("."):
+        here = here[0 if step == "*" else int(step)] if isinstance(here, list | tuple) else here[step]
+    return here
 
 
 def _put(node: Any, path: list[str], field: str, value: Any) -> Any:
