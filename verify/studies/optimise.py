@@ -1,15 +1,14 @@
-"""Optimisation of a quantity over keys of the scene, under limits of other quantities.
+"""Optimisation of a quantity over keys of the scene and its arguments, under limits of other quantities.
 
 Variables run from 0 to 1 between their bounds. A point that violates limits, or at which a quantity has no value, ranks
-behind every feasible one by the size of its violation (K. Deb, Comput. Methods Appl. Mech. Eng. 186 (2000) 311-338), so
-that populations need one number for each point, which an executor evaluates. Local steps treat limits as constraints.
-The optimum is searched again on a finer model, from the first one, before it is reported: what discretisation changes
-is the difference between both.
+behind every feasible one by the size of its violation (K. Deb, Comput. Methods Appl. Mech. Eng. 186 (2000) 311-338):
+populations need one number for each point, which an executor evaluates. The local method, COBYQA, is free of derivatives
+and treats limits as constraints. Before it is reported the optimum is searched again on a finer model, from the first.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from math import exp, isfinite, log
+from math import exp, inf, isfinite, log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
 import msgspec
@@ -18,7 +17,7 @@ from msgspec import Meta
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
-from verify.errors import InputError
+from verify.errors import InputError, near_name
 from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, cores, workers
 from verify.quantities.base import QUANTITIES, evaluate
@@ -32,24 +31,27 @@ if TYPE_CHECKING:
     from verify.scene.model import Scene
 
 Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
-Task: TypeAlias = tuple[dict[str, Any], tuple[Request, ...], dict[str, float]]
-STAGES: dict[str, tuple[str, ...]] = {
-    "global": ("differential evolution", "COBYQA"),
-    "cma": ("CMA-ES", "COBYQA"),
-    "cobyqa": ("COBYQA",),
-    "slsqp": ("SLSQP",),
-    "nelder-mead": ("Nelder-Mead",),
-}
-INFEASIBLE = 1e30  # merit of the boundary between feasible and infeasible points
-TOLERANCE = 1e-6
-"""Violation of a limit, relative to it, up to which a point is feasible; accuracy of variables relative to their range."""
-ACTIVE = 1e-3  # distance from a bound or limit below which it is active, relative to the range or the limit
+Task: TypeAlias = tuple[
+    dict[str, Any], Sequence[Request], dict[str, float]
+]  # a scene's tables, requests, values by key
+Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
+STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
+INFEASIBLE = 1e30  # least merit of a point that violates a limit
+TOLERANCE = 1e-6  # violation, relative to a limit, up to which a point is feasible
+ACTIVE = 1e-3
+FINAL = 1e-9  # accuracy of a variable relative to its range
+POPULATION = 15  # of differential evolution, for each variable
+NOTES = [
+    "A bound or a limit is active within 0.1 % of the range or of the limit.",
+    "finer: the exact beam where the quantity has it, else twice the count; twice the time steps.",
+]
+HISTORY = "Points that satisfy the limits, in the order of their evaluation, and the best of them so far."
 
 
 class Variable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A number of the scene between two bounds. Raises InputError for bounds in the wrong order."""
+    """A number between two bounds. Raises InputError for bounds in the wrong order."""
 
-    key: Annotated[str, Meta(description="'beam.thickness', 'drive.force.*.amplitude'; several joined by commas.")]
+    key: Annotated[str, Meta(description="Of the scene: 'drive.force.*.amplitude, beam.width'; or an argument.")]
     low: Annotated[float, Meta(description="Lower bound, in the key's unit.")]
     high: Annotated[float, Meta(description="Upper bound, in the key's unit.")]
     start: Annotated[float, Meta(description="Default: the scene's value.")] | None = None
@@ -62,15 +64,15 @@ class Variable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def value(self, u: float) -> float:
         """The value at u from 0 to 1."""
-        if self.scale == "log":
-            return min(max(exp(log(self.low) + u * log(self.high / self.low)), self.low), self.high)
-        return self.low + u * (self.high - self.low)
+        if self.scale == "linear":
+            return self.low + u * (self.high - self.low)
+        return min(max(exp(log(self.low) + u * log(self.high / self.low)), self.low), self.high)
 
     def unit(self, value: float) -> float:
         """The u of a value."""
-        if self.scale == "log":
-            return log(value / self.low) / log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
+        if self.scale == "linear":
+            return (value - self.low) / (self.high - self.low)
+        return log(value / self.low) / log(self.high / self.low)
 
 
 class Limit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -86,15 +88,14 @@ class Limit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             raise InputError(f"optimise.limit {self.quantity}: give at_least, at_most or both")
 
     @property
-    def text(self) -> str:
-        """'at least 0.02, at most 0.03'."""
-        sides = (("at least", self.at_least), ("at most", self.at_most))
-        return ", ".join(f"{side} {value:g}" for side, value in sides if value is not None)
+    def sides(self) -> list[tuple[str, float, float]]:
+        """(name, limit, sign of a value's distance from it)."""
+        both = (("at least", self.at_least, 1.0), ("at most", self.at_most, -1.0))
+        return [(name, limit, sign) for name, limit, sign in both if limit is not None]
 
     def distances(self, value: float) -> list[float]:
-        """Distance of a value from each limit, negative where it is violated, relative to the limit unless that is 0."""
-        found = [] if self.at_least is None else [(value - self.at_least) / (abs(self.at_least) or 1.0)]
-        return found if self.at_most is None else [*found, (self.at_most - value) / (abs(self.at_most) or 1.0)]
+        """Distance of a value from each limit, relative to it unless it is zero; negative where violated."""
+        return [sign * (value - limit) / (abs(limit) or 1.0) for _, limit, sign in self.sides]
 
 
 class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -106,125 +107,111 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
     arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
-    goal: Annotated[Literal["minimise", "maximise"], Meta(description="What to do with it.")] = "minimise"
+    goal: Literal["minimise", "maximise"] = "minimise"
     variable: Annotated[tuple[Variable, ...], Meta(min_length=1, description="What varies.")]
     limit: Annotated[tuple[Limit, ...], Meta(description="Limits of other quantities.")] = ()
     method: Annotated[
-        Literal["global", "cma", "cobyqa", "slsqp", "nelder-mead"],
-        Meta(description="global: differential evolution, then COBYQA from its best point; cma: CMA-ES (extra "
-                         "`optimise`), then COBYQA; the others are local, from the start."),
-    ] = "global"  # fmt: skip
-    evaluations: Annotated[int, Meta(ge=10, description="Most points of each stage.")] = 1000
+        Literal["global", "cma", "local"],
+        Meta(description="global: differential evolution, cma: CMA-ES, each before a local search; local: from start."),
+    ] = "global"
+    evaluations: Annotated[int, Meta(ge=10, description="Most points of each search.")] = 1000
     seed: Annotated[int, Meta(ge=1, description="Of random numbers.")] = 1
 
     @property
-    def requests(self) -> tuple[Request, ...]:
+    def requests(self) -> list[Request]:
         """The quantity, then those of the limits."""
-        return ((self.quantity, self.arguments), *((one.quantity, one.arguments) for one in self.limit))
+        return [(self.quantity, self.arguments), *((one.quantity, one.arguments) for one in self.limit)]
 
     def check(self, scene: "Scene") -> None:
-        """Raise InputError for an unknown quantity, argument or key, and a start that is outside of its bounds."""
-        for name, arguments in self.requests:
-            QUANTITIES.named(name, "optimise.quantity").bind(arguments)
+        """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
         self.start(plain_tables(scene))
 
-    def start(self, tables: dict[str, Any]) -> list[float]:
+    def start(self, tables: dict[str, Any]) -> Point:
         """Start of each variable, from 0 to 1. Raises InputError."""
         found = []
         for one in self.variable:
-            value: Any = one.start if one.start is not None else value_at(tables, one.key, "optimise.variable")
+            value: Any = value_of(tables, self.requests, one.key, "optimise.variable")
+            value = one.start if one.start is not None else value
             if isinstance(value, bool) or not isinstance(value, int | float) or not one.low <= value <= one.high:
                 bounds = f"between {one.low:g} and {one.high:g}"
                 raise InputError(f"optimise.variable {one.key}: its start {value!r} is no number {bounds}: give start")
             found.append(one.unit(value))
-        return found
+        return tuple(found)
+
+    def values(self, point: Point) -> dict[str, float]:
+        """Values by key."""
+        return {one.key: one.value(u) for one, u in zip(self.variable, point, strict=True)}
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
-        """Search the optimum, and again on a finer model. Raises InputError."""
-        import numpy as np
+        """Search the optimum, and from it again on a finer model, with the workers of `parallel`.
 
-        self.check(scene)
+        Returns the variables with active bounds, the quantities at the start and at both optima, and the history.
+        Without a feasible point the result is void. Raises InputError.
+        """
         tables = plain_tables(scene)
-        begin = np.array(self.start(tables))
+        begin = self.start(tables)
         with workers(self.evaluations, cores()) as executor:
             coarse = Search(self, tables, self.requests, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:
                 coarse.run(stage)
-            first, finer, labels = coarse.best, coarse, [""] * len(self.requests)
-            if coarse.feasible(first):
-                requests, labels = _finer(scene_with(tables, self.values(first)), self.requests)
-                finer = Search(self, tables, requests, executor, progress) if any(labels) else coarse
-                finer.merits([np.array(first)])
-                if finer is not coarse:
-                    finer.run(STAGES[self.method][-1])
-        return self._result(coarse, finer, tuple(begin), labels)
-
-    def values(self, u: Sequence[float]) -> dict[str, float]:
-        """Values by key at u from 0 to 1."""
-        return {one.key: one.value(float(x)) for one, x in zip(self.variable, u, strict=True)}
-
-    def _result(self, coarse: "Search", finer: "Search", begin: "Point", labels: list[str]) -> Result:
-        first, best, again = coarse.best, finer.best, finer is not coarse
+            requests, labels = _finer(tables, self.requests, self.values(coarse.best))
+            finer = coarse
+            if coarse.feasible and any(labels):
+                finer = Search(self, tables, requests, executor, progress)
+                finer.merits([coarse.best])
+                finer.run("COBYQA")
+        first, best = coarse.best, finer.best
+        points = (coarse, begin), (coarse, first), (finer, first), (finer, best)
+        start, optimum, there, last = (search.found[point][0] or [None] * len(requests) for search, point in points)
+        rows = [
+            (one.key, one.low, one.high, *(one.value(point[i]) for point in (begin, first, best)),
+             "low" if best[i] < ACTIVE else "high" if best[i] > 1.0 - ACTIVE else "")
+            for i, one in enumerate(self.variable)
+        ]  # fmt: skip
+        sizes: list[tuple[Any, ...]] = [(self.quantity, f"{self.goal}d", None)]
+        for one, value in zip(self.limit, last[1:], strict=True):
+            active = value is not None and min(map(abs, one.distances(value))) < ACTIVE
+            sizes.append((one.quantity, ", ".join(f"{name} {size:g}" for name, size, _ in one.sides), active))
+        sizes = [
+            (*head, "" if (unit := QUANTITIES[head[0]].unit) == "1" else unit, *values, label or "the same")
+            for head, *values, label in zip(sizes, start, optimum, there, last, labels, strict=True)
+        ]
         columns = [Column("variable"), *(Column(name, format=".8g") for name in ("low", "high", "start", "optimum"))]
-        columns += [Column("on the finer model", format=".10g"), Column("bound")]
-        rows: list[tuple[Any, ...]] = []
-        for i, one in enumerate(self.variable):
-            bound = "low" if best[i] < ACTIVE else "high" if best[i] > 1.0 - ACTIVE else ""
-            there = one.value(best[i]) if again else None
-            rows.append((one.key, one.low, one.high, one.value(begin[i]), one.value(first[i]), there, bound))
-        none = [None] * len(self.requests)
-        at = [search.found[point][0] or none for search, point in ((coarse, begin), (coarse, first))]
-        at += [finer.found[point][0] or none if again else none for point in (first, best)]
         heads = [Column(name) for name in ("quantity", "limit", "active", "unit")]
-        heads += [Column(n, format=".6g") for n in ("at start", "at optimum", "there, finer", "finer optimum")]
-        sizes: list[tuple[Any, ...]] = []
-        for i, (name, _) in enumerate(self.requests):
-            text, last, unit = self.limit[i - 1].text if i else f"{self.goal}d", (at[3] if again else at[1])[i], ""
-            active = last is not None and min(map(abs, self.limit[i - 1].distances(last))) < ACTIVE if i else None
-            unit = "" if QUANTITIES[name].unit == "1" else QUANTITIES[name].unit
-            sizes.append((name, text, active, unit, *(values[i] for values in at), labels[i] or "none"))
-        notes = ["A bound or a limit is active within 0.1 % of the range or of the limit."]
-        tables = [
-            Table("Variables", columns, rows, notes),
+        heads += [Column(name, format=".6g") for name in ("start", "optimum", "there, finer", "finer optimum")]
+        tables_of_result = [
+            Table("Variables", [*columns, Column("finer optimum", format=".10g"), Column("bound")], rows, NOTES),
             Table("Objective and limits", [*heads, Column("finer model")], sizes),
         ]
-        count = len(coarse.found) + again * len(finer.found)
-        data: dict[str, Any] = {"optimum": self.values(best), "evaluations": count, "start": self.values(begin)}
-        if not coarse.feasible(first) or not finer.feasible(best):
-            reason = finer.found[best][1] or "a limit is violated at each point, by least at the one in the table"
-            failure = f"no point satisfies all limits ({reason})"
-            margins = [void("the optimum", failure, "widen optimise.variable or relax optimise.limit")]
-            return Result("", tables, data=data | {"feasible": False}, warnings=coarse.notes, margins=margins)
-        start, there, value = (
-            None if values is none else values[0] for values in (at[0], at[2], at[3 if again else 1])
-        )
-        assert value is not None
-        size = max(abs(value), abs(start or 0.0)) or 1.0
-        loss = abs(there - value) / size if there is not None else 0.0
-        part = Margin(name="discretisation of the optimum", size=loss,
-                      failure="the optimum moves with the discretisation", remedy="use a larger count")  # fmt: skip
-        inexact = [part] if again and not all(one in ("", EXACT) for one in labels) else []
-        scene, own = scene_with(coarse.tables, self.values(best)), SolutionCache
-        cache = own(scene.beam)
-        margins = [margin for name, arguments in finer.requests
-                   for margin in quantity_margins(name, arguments, scene, cache)]  # fmt: skip
-        where = ", ".join(f"{key} = {x:.8g}" for key, x in self.values(best).items())
-        unit = sizes[0][3] and f" {sizes[0][3]}"
-        before = f" (start: {start:.6g}{unit})" if start is not None else ""
-        model = "; on the finer model" if again else ""
+        data = {"optimum": self.values(best), "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
+        notes = list(dict.fromkeys(coarse.notes + finer.notes))
+        if not finer.feasible:
+            reason = finer.found[best][1] or "the best one is in the table"
+            remedy = "widen optimise.variable, or relax optimise.limit"
+            margins = [void("the optimum", f"no point satisfies all limits ({reason})", remedy)]
+            return Result("", tables_of_result, warnings=notes, data=data, margins=margins)
+        value, before = float(last[0] or 0.0), start[0]
+        size = max(abs(value), abs(before or 0.0)) or 1.0
+        loss, margins = inf if there[0] is None else abs(there[0] - value) / size, list[Margin]()
+        if any(label not in ("", EXACT) for label in labels):
+            cause = "the optimum moves with the discretisation"
+            margins = [Margin(name="discretisation of the optimum", size=loss, failure=cause, remedy="raise count")]
+        at_best = scene_with(tables, _of_scene(data["optimum"]))
+        solved = SolutionCache(at_best.beam)
+        for name, arguments in requests:
+            margins += quantity_margins(name, _with(name, arguments, data["optimum"]), at_best, solved)
+        where = ", ".join(f"{key} = {x:.8g}" for key, x in data["optimum"].items())
+        unit = f" {sizes[0][3]}".rstrip()
+        comparison = "" if before is None else f" (start: {before:.6g}{unit})"
         return Result(
-            summary=f"{self.quantity} {self.goal}d: {value:.6g}{unit}{before} at {where}{model}.",
-            tables=tables,
+            summary=f"{self.quantity} {self.goal}d: {value:.6g}{unit}{comparison} at {where}.",
+            tables=tables_of_result,
             figures=[Figure("optimise-history", f"Search for the optimum of {self.quantity}", HISTORY, coarse.draw)],
-            warnings=coarse.notes + (finer.notes if again else []),
-            data=data | {"feasible": True, "loss by discretisation": loss, "history": coarse.history},
-            margins=[*inexact, *margins],
+            warnings=notes,
+            data=data | {"loss by discretisation": loss, "history": coarse.history},
+            margins=margins,
         )
-
-
-HISTORY = "Points that satisfy the limits, in the order of their evaluation, and the best of them so far."
-Point: TypeAlias = tuple[float, ...]
 
 
 class Search:
@@ -234,7 +221,7 @@ class Search:
         self,
         study: Optimise,
         tables: dict[str, Any],
-        requests: tuple[Request, ...],
+        requests: Sequence[Request],
         executor: Executor | None,
         progress: Progress,
     ) -> None:
@@ -243,35 +230,31 @@ class Search:
         self.found: dict[Point, tuple[list[float] | None, str]] = {}
         """(values, '') or (None, reason) of the requests, by point."""
         self.notes: list[str] = []
+        """Searches that stopped early."""
+        self.sign = 1.0 if study.goal == "minimise" else -1.0
 
-    def merits(self, points: "Sequence[Array] | Array") -> "Array":
-        """Merit of each point, (n,): the least is the best."""
-        import numpy as np
-
-        keys: list[Point] = [tuple(map(float, np.clip(point, 0.0, 1.0))) for point in points]
+    def merits(self, points: "Sequence[Sequence[float]] | Array") -> list[float]:
+        """Merit of each point: the least is the best."""
+        keys: list[Point] = [tuple(min(max(float(u), 0.0), 1.0) for u in point) for point in points]
         new = [key for key in dict.fromkeys(keys) if key not in self.found]
         tasks: list[Task] = [(self.tables, self.requests, self.study.values(key)) for key in new]
         results = dict(completed(figures_at, tasks, self.executor if len(new) > 1 else None))
-        self.found.update((key, results[i]) for i, key in enumerate(new))
+        self.found |= {key: results[i] for i, key in enumerate(new)}
         self.progress(f"optimise: {len(self.found)} points")
-        return np.array([self.merit(key) for key in keys])
+        return [self.merit(key) for key in keys]
 
     def merit(self, point: Point) -> float:
-        """Signed objective of a feasible point; beyond INFEASIBLE by its violation for another."""
+        """Signed objective of a feasible point; for another beyond INFEASIBLE by its violation."""
         values = self.found[point][0]
         if values is None:
             return 1e3 * INFEASIBLE
-        excess = sum(max(-one, 0.0) for one in self.distances(values) if one < -TOLERANCE)
-        sign = 1.0 if self.study.goal == "minimise" else -1.0
-        return INFEASIBLE * (1.0 + min(excess, 900.0)) if excess else sign * values[0]
+        excess = sum(-one for one in self.distances(values) if one < -TOLERANCE)
+        return INFEASIBLE * (1.0 + min(excess, 900.0)) if excess else self.sign * values[0]
 
     def distances(self, values: Sequence[float]) -> list[float]:
         """Relative distances from all limits, negative where violated."""
-        return [d for one, value in zip(self.study.limit, values[1:], strict=True) for d in one.distances(value)]
-
-    def feasible(self, point: Point) -> bool:
-        """Whether a point satisfies all limits."""
-        return self.merit(point) < INFEASIBLE
+        limits = zip(self.study.limit, values[1:], strict=True)
+        return [distance for one, value in limits for distance in one.distances(value)]
 
     @property
     def best(self) -> Point:
@@ -279,76 +262,69 @@ class Search:
         return min(self.found, key=self.merit)
 
     @property
+    def feasible(self) -> bool:
+        """Whether a point satisfies all limits."""
+        return self.merit(self.best) < INFEASIBLE
+
+    @property
     def history(self) -> list[tuple[int, float]]:
         """(number, objective) of every feasible point."""
-        return [(i, v[0]) for i, (key, (v, _)) in enumerate(self.found.items(), 1) if v and self.feasible(key)]
+        merits = enumerate(map(self.merit, self.found), 1)
+        return [(i, self.sign * merit) for i, merit in merits if merit < INFEASIBLE]
 
     def run(self, stage: str) -> None:
-        """One method, from the best point so far."""
-        import numpy as np
+        """One method, from the best point so far. Raises InputError where it is not installed."""
         from scipy.optimize import Bounds, NonlinearConstraint, differential_evolution, minimize
 
-        study, start, d = self.study, np.array(self.best), len(self.study.variable)
-        most, before = study.evaluations, len(self.found)
-        if stage == "differential evolution":
-            options: dict[str, Any] = {"vectorized": True, "updating": "deferred", "polish": False, "rng": study.seed}
-            generations = max(most // (15 * d) - 1, 1)
-            differential_evolution(
-                lambda x: self.merits(x.T), [(0.0, 1.0)] * d, x0=start, maxiter=generations, popsize=15, **options
-            )
+        start, most, d, before = self.best, self.study.evaluations, len(self.study.variable), len(self.found)
+        if stage == "DE":
+            random: Any = {
+                "rng": self.study.seed,
+                "popsize": POPULATION,
+                "maxiter": max(most // (POPULATION * d) - 1, 1),
+            }
+            batch: Any = {"vectorized": True, "updating": "deferred", "polish": False}
+            differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, x0=start, **random, **batch)
             return
         if stage == "CMA-ES":
-            self._cma(start)
+            try:
+                import cma
+            except ImportError:
+                missing = "cma is not installed, pip install 'fem-segment-verify[optimise]', or give 'global'"
+                raise InputError(f"optimise.method = 'cma': {missing}") from None
+            settings = {"bounds": [0.0, 1.0], "seed": self.study.seed, "maxfevals": most, "verbose": -9}
+            evolution = cma.CMAEvolutionStrategy(start, 0.25, settings)
+            while not evolution.stop():
+                points = evolution.ask()
+                evolution.tell(points, self.merits(points))
             return
-        size = (abs(self.merit(self.best)) if self.feasible(self.best) else 0.0) or 1.0
-        sign = 1.0 if study.goal == "minimise" else -1.0
+        n = len(self.distances([0.0] * len(self.requests)))
+        size = (abs(self.merit(start)) if self.feasible else 0.0) or 1.0
 
         def values(x: "Array") -> list[float] | None:
             self.merits([x])
-            return self.found[tuple(map(float, np.clip(x, 0.0, 1.0)))][0]
+            return self.found[tuple(min(max(float(u), 0.0), 1.0) for u in x)][0]
 
         def objective(x: "Array") -> float:
-            """About one at the start: methods stop by its absolute change."""
-            if stage == "Nelder-Mead":
-                return float(self.merits([x])[0]) / size
-            return sign * here[0] / size if (here := values(x)) else 1e3
+            return self.sign * here[0] / size if (here := values(x)) else 1e3
 
         def distances(x: "Array") -> list[float]:
             return self.distances(here) if (here := values(x)) else [-1.0] * n
 
-        n = sum(len(one.distances(0.0)) for one in study.limit)
-        limits = [NonlinearConstraint(distances, 0.0, np.inf)] if n and stage != "Nelder-Mead" else []
-        own: dict[str, Any] = {
-            "COBYQA": {"maxfev": most, "initial_tr_radius": 0.05, "final_tr_radius": 1e-9},
-            "SLSQP": {"maxiter": max(most // (d + 1), 1), "ftol": 1e-12, "eps": 1e-6},
-            "Nelder-Mead": {"maxfev": most, "xatol": 1e-9, "fatol": 1e-12},
-        }
-        minimize(
-            objective, start, method=stage, bounds=Bounds([0.0] * d, [1.0] * d), constraints=limits, options=own[stage]
-        )
+        limits = [NonlinearConstraint(distances, 0.0, inf)] if n else []
+        options = {"maxfev": most, "initial_tr_radius": 0.05, "final_tr_radius": FINAL}
+        box = Bounds([0.0] * d, [1.0] * d)
+        minimize(objective, start, method=stage, bounds=box, constraints=limits, options=options)
         if len(self.found) - before >= most:
-            self.notes.append(f"{stage} stopped at its {most} points: raise optimise.evaluations.")
-
-    def _cma(self, start: "Array") -> None:
-        try:
-            import cma
-        except ImportError:
-            raise InputError(
-                "optimise.method = 'cma': it is not installed, pip install 'fem-segment-verify[optimise]', or give 'global'"
-            ) from None
-        settings = {"bounds": [0.0, 1.0], "seed": self.study.seed, "maxfevals": self.study.evaluations, "verbose": -9}
-        evolution = cma.CMAEvolutionStrategy(start, 0.25, settings)
-        while not evolution.stop():
-            points = evolution.ask()
-            evolution.tell(points, list(self.merits(points)))
+            self.notes.append(f"The local search stopped at its {most} points: raise optimise.evaluations.")
 
     def draw(self, ax: "Axes") -> None:
         """Feasible points and the best so far."""
         import numpy as np
 
         numbers, values = zip(*self.history, strict=True)
-        best = np.minimum if self.study.goal == "minimise" else np.maximum
         ax.plot(numbers, values, ".", alpha=0.5, label="points")
+        best = np.minimum if self.sign > 0.0 else np.maximum
         ax.step(numbers, best.accumulate(values), where="post", label="best so far")
         if min(values) > 0.0 and max(values) > 30.0 * min(values):
             ax.set_yscale("log")
@@ -361,10 +337,10 @@ def figures_at(task: Task) -> tuple[list[float] | None, str]:
     """(values of quantities on a scene with other values by key, ''), or (None, reason) where there is none."""
     tables, requests, values = task
     try:
-        scene = scene_with(tables, values)
+        scene = scene_with(tables, _of_scene(values))
         cache, found = SolutionCache(scene.beam), []
         for name, arguments in requests:
-            value = evaluate(name, arguments, scene, cache)
+            value = evaluate(name, _with(name, arguments, values), scene, cache)
             if not isinstance(value, int | float) or not isfinite(value):
                 raise InputError(f"quantity = {name!r} is no finite real number: {value}")
             found.append(float(value))
@@ -373,31 +349,52 @@ def figures_at(task: Task) -> tuple[list[float] | None, str]:
         return None, str(error)
 
 
-def _finer(scene: "Scene", requests: Sequence[Request]) -> tuple[tuple[Request, ...], list[str]]:
+def value_of(tables: dict[str, Any], requests: Sequence[Request], key: str, field: str) -> Any:
+    """The value of the scene at a key with dots, of an argument of the quantities at one without. Raises InputError."""
+    fields: dict[str, Any] = {}
+    for name, arguments in requests:
+        schema = QUANTITIES.named(name, f"{field.partition('.')[0]}.quantity").schema
+        fields |= {one.name: arguments.get(one.name, one.default) for one in msgspec.structs.fields(schema)}
+        if unknown := next((one for one in arguments if one not in schema.__struct_fields__), None):
+            raise InputError(f"{unknown} is no argument of {name}: {near_name(unknown, schema.__struct_fields__)}")
+    if "." in key:
+        return value_at(tables, key, field)
+    if key not in fields:
+        raise InputError(f"{field} {key} is no key of the scene and no argument: {near_name(key, tuple(fields))}")
+    return fields[key]
+
+
+def _of_scene(values: Mapping[str, float]) -> dict[str, float]:
+    return {key: value for key, value in values.items() if "." in key}
+
+
+def _with(name: str, arguments: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """The arguments of a quantity with those that vary."""
+    return arguments | {key: value for key, value in values.items() if key in QUANTITIES[name].types}
+
+
+def _finer(
+    tables: dict[str, Any], requests: Sequence[Request], values: dict[str, float]
+) -> tuple[list[Request], list[str]]:
     """Each quantity on the exact beam where it has that model, else with twice the count; with twice the time steps.
 
     The first that has a value at this point; with a label each, empty where there is no finer model.
     """
-    found, labels, cache = list(requests), [""] * len(requests), SolutionCache(scene.beam)
+    found, labels = list(requests), [""] * len(requests)
     for i, (name, arguments) in enumerate(requests):
-        bound = {
-            f.name: f.default for f in msgspec.structs.fields(QUANTITIES[name].schema) if not f.required
-        } | arguments
-        model, count, steps = bound.get("model"), arguments.get("count"), bound.get("steps_per_period")
-        time = {"steps_per_period": 2 * steps} if isinstance(steps, int) else {}
-        more = f"{2 * steps} steps a period" if time else ""
+        fields = msgspec.structs.fields(QUANTITIES[name].schema)
+        settings = {one.name: one.default for one in fields if not one.required} | arguments
+        model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
         tries: list[tuple[dict[str, Any], str]] = []
         if model in MODELS and MODELS[model].sized:
-            exact = {key: value for key, value in arguments.items() if key != "count"} | {"model": EXACT}
-            tries = [(exact, EXACT)] + [(arguments | {"count": 2 * count}, f"count = {2 * count}")] * bool(count)
-        for own, label in [
-            *((own | time, f"{label}, {more}".strip(", ")) for own, label in tries),
-            *[(arguments | time, more)] * bool(time),
-        ]:
-            try:
-                evaluate(name, own, scene, cache)
-            except InputError:
-                continue
-            found[i], labels[i] = (name, own), label
-            break
-    return tuple(found), labels
+            tries.append(({key: one for key, one in arguments.items() if key != "count"} | {"model": EXACT}, EXACT))
+        if count:
+            tries.append((arguments | {"count": 2 * count}, f"count = {2 * count}"))
+        if steps:
+            time, label = {"steps_per_period": 2 * steps}, f"{2 * steps} steps a period"
+            tries = [(own | time, f"{text}, {label}") for own, text in tries] + [(arguments | time, label)]
+        for own, label in tries:
+            if figures_at((tables, [(name, own)], values))[0] is not None:
+                found[i], labels[i] = (name, own), label
+                break
+    return found, labels

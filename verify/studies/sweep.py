@@ -274,10 +274,11 @@ def scene_with(tables: dict[str, Any], values: Mapping[str, Any]) -> "Scene":
 
 def value_at(tables: dict[str, Any], keys: str, field: str) -> Any:
     """The value at the first of several keys, for * of the first entry. Raises InputError for an unknown key."""
-    for key in keys.split(","):
-        _put(tables, key.strip().split("."), f"{field} {keys}", None)
+    paths = [key.strip().split(".") for key in keys.split(",")]
+    for path in paths:
+        _put(tables, path, f"{field} {keys}", None)
     here: Any = tables
-    for step in keys.split(",")[0].strip().split("."):
+    for step in paths[0]:
         here = here[0 if step == "*" else int(step)] if isinstance(here, list | tuple) else here[step]
     return here
 
