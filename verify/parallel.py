@@ -23,48 +23,57 @@ PATIENCE = 30.0
 
 
 @contextmanager
-def cluster(scheduler: str | None = None, local_cluster: int | None = None) -> Iterator[None]:
-    """Inside the context `workers` are those of a dask cluster, and a task whose worker dies runs again on another.
+def cluster(where: str | int) -> Iterator[None]:
+    """Inside the context `workers` are those of a dask cluster; a task whose worker dies runs again on another.
 
-    `scheduler` is the address of a running one, tcp://host:8786; `local_cluster` starts that many processes on this
-    machine; with neither `workers` are processes as outside. Raises InputError where dask.distributed is not installed,
-    the scheduler does not respond or has no worker, or a worker has other versions, which compute other digits.
+    `where` is the address of its scheduler, tcp://host:8786, or a number of processes to start on this machine. Raises
+    InputError where dask.distributed is not installed, the scheduler does not respond or has no worker, and for a
+    worker with other versions, which may compute other digits.
     """
-    if not scheduler and not local_cluster:
-        yield
-        return
-    if scheduler and local_cluster:
-        raise InputError(f"scheduler = {scheduler!r} and local_cluster = {local_cluster}: give one of the two")
     try:
         from distributed import Client, LocalCluster
     except ImportError:
+        install = "pip install 'fem-segment-verify[cluster]'"
         raise InputError(
-            "dask.distributed is not installed: pip install 'fem-segment-verify[cluster]', or leave --scheduler and "
-            "--local-cluster out"
+            f"cluster = {where!r}: dask.distributed is not installed, {install}, or leave it out"
         ) from None
     with ExitStack() as stack:
-        where: Any = scheduler
-        if local_cluster:
-            options: Any = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
-            where = stack.enter_context(LocalCluster(n_workers=local_cluster, **options))
+        address: Any = where
+        if isinstance(where, int):
+            with _uninterrupted():
+                address = LocalCluster(n_workers=where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
+            stack.enter_context(address)
         try:
-            client = stack.enter_context(Client(where, timeout=PATIENCE, set_as_default=False))
+            client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
             client.wait_for_workers(1, timeout=PATIENCE)
             theirs = client.run(versions)
-        except (OSError, ValueError, TypeError, ImportError) as error:
-            raise InputError(
-                f"scheduler = {shown(scheduler)} has no usable worker ({error or 'no response'}): start `dask "
-                "scheduler` and `dask worker` with verify installed, or correct the address"
-            ) from None
+        except (OSError, ValueError, ImportError) as error:
+            remedy = "start `dask scheduler` and `dask worker` with verify installed, or correct the address"
+            raise InputError(f"cluster = {shown(where)} has no usable worker ({error}): {remedy}") from None
         for worker, found in theirs.items():
-            for name, own in versions().items():
-                if found.get(name) != own:
-                    raise InputError(f"worker {worker} has {name} {found.get(name)}, not {own}: install the same there")
+            if found != versions():
+                raise InputError(f"worker {worker} has {found}, this machine {versions()}: install the same versions")
         token = CLUSTER.set(client.get_executor(pure=False))
         try:
             yield
         finally:
             CLUSTER.reset(token)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Processes that start here ignore Ctrl-C, which this one handles, and then ends them."""
+    from signal import SIG_IGN, SIGINT, signal
+
+    try:
+        before = signal(SIGINT, SIG_IGN)
+    except ValueError:  # only the main thread has handlers
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal(SIGINT, before)
 
 
 def cores() -> int | None:
@@ -151,8 +160,9 @@ def map_processes(
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages on which the digits of a result depend."""
     from importlib.metadata import version
+    from platform import python_version
 
     from verify import __version__
 
     packages = {name: version(name) for name in ("numpy", "scipy", "numba", "scikit-fem")}
-    return {"verify": __version__, "Python": ".".join(map(str, sys.version_info[:3]))} | packages
+    return {"verify": __version__, "Python": python_version(), **packages}

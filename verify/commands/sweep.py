@@ -22,8 +22,6 @@ def sweep(
     words: tuple[str, ...],
     overrides: tuple[str, ...],
     file: str | None,
-    scheduler: str | None,
-    local_cluster: int | None,
     charts: str | None,
     **formats: bool,
 ) -> None:
@@ -35,7 +33,6 @@ def sweep(
     """
     from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert, typed
-    from verify.parallel import cluster
     from verify.quantities.base import QUANTITIES
     from verify.scene.load import load_scene, type_at
     from verify.studies.sweep import Sweep
@@ -54,12 +51,10 @@ def sweep(
     over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
     loaded = load_scene(scene, overrides)
-    if quantities:
-        study = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
-    else:
-        study = loaded.studies.get("sweep") or convert({}, Sweep, "sweep")  # which says what is missing
+    own = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
+    study = own if quantities else loaded.studies.get("sweep") or convert({}, Sweep, "sweep")
     study.check(loaded)
-    with cluster(scheduler, local_cluster), shared.progress(quiet=any(formats.values())) as step:
+    with shared.progress(quiet=any(formats.values())) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step, Path(file) if file else None)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

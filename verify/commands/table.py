@@ -14,14 +14,7 @@ from verify.commands import shared
 @shared.charts_option
 @shared.format_options
 def table(
-    scene: str,
-    options: tuple[str, ...],
-    study: str,
-    overrides: tuple[str, ...],
-    scheduler: str | None,
-    local_cluster: int | None,
-    charts: str | None,
-    **formats: bool,
+    scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], charts: str | None, **formats: bool
 ) -> None:
     """Run one study of SCENE and print its tables; KEY=VALUE sets an option of the study.
 
@@ -30,7 +23,6 @@ def table(
     from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert
     from verify.errors import InputError
-    from verify.parallel import cluster
     from verify.scene.load import load_scene, type_at
     from verify.studies.base import STUDIES, studies_of
 
@@ -42,8 +34,7 @@ def table(
     loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)))
     chosen = dict(studies_of(loaded)).get(study) or convert({}, STUDIES[study], study)
     chosen.check(loaded)
-    shown = shared.progress(chosen.steps or None, quiet=any(formats.values()), lines=chosen.steps > 0)
-    with cluster(scheduler, local_cluster), shown as step:
+    with shared.progress(chosen.steps or None, quiet=any(formats.values()), lines=chosen.steps > 0) as step:
         result = chosen.run(loaded, SolutionCache(loaded.beam), step)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

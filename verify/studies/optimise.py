@@ -2,13 +2,13 @@
 
 Variables run from 0 to 1 between their bounds. A point that violates limits, or at which a quantity has no value, ranks
 behind every feasible one by the size of its violation (K. Deb, Comput. Methods Appl. Mech. Eng. 186 (2000) 311-338):
-populations need one number for each point, which an executor evaluates. The local method, COBYQA, is free of derivatives
+populations need one number for each point, which an executor evaluates. The local method, COBYQA, needs no derivatives
 and treats limits as constraints. Before it is reported the optimum is searched again on a finer model, from the first.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
-from math import exp, inf, isfinite, log
+from math import inf, isfinite, log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
 import msgspec
@@ -17,23 +17,20 @@ from msgspec import Meta
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
-from verify.errors import InputError, near_name
+from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, cores, workers
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
-from verify.studies.sweep import plain_tables, quantity_margins, scene_with, value_at
+from verify.studies.sweep import Request, plain_tables, quantity_margins, value_at, varied
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from verify.scene.model import Scene
 
-Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
-Task: TypeAlias = tuple[
-    dict[str, Any], Sequence[Request], dict[str, float]
-]  # a scene's tables, requests, values by key
+Task: TypeAlias = tuple[dict[str, Any], Sequence[Request], dict[str, float]]  # arguments of `varied`
 Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
 STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
 INFEASIBLE = 1e30  # least merit of a point that violates a limit
@@ -64,15 +61,13 @@ class Variable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     def value(self, u: float) -> float:
         """The value at u from 0 to 1."""
-        if self.scale == "linear":
-            return self.low + u * (self.high - self.low)
-        return min(max(exp(log(self.low) + u * log(self.high / self.low)), self.low), self.high)
+        return self.low * (self.high / self.low) ** u if self.scale == "log" else self.low + u * (self.high - self.low)
 
     def unit(self, value: float) -> float:
         """The u of a value."""
-        if self.scale == "linear":
-            return (value - self.low) / (self.high - self.low)
-        return log(value / self.low) / log(self.high / self.low)
+        if self.scale == "log":
+            return log(value / self.low) / log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
 
 
 class Limit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -124,15 +119,15 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: "Scene") -> None:
         """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
-        self.start(plain_tables(scene))
+        tables = plain_tables(scene)
+        varied(tables, self.requests, self.values(self.start(tables)))
 
     def start(self, tables: dict[str, Any]) -> Point:
         """Start of each variable, from 0 to 1. Raises InputError."""
         found = []
         for one in self.variable:
-            value: Any = value_of(tables, self.requests, one.key, "optimise.variable")
-            value = one.start if one.start is not None else value
-            if isinstance(value, bool) or not isinstance(value, int | float) or not one.low <= value <= one.high:
+            value: Any = value_at(tables, one.key, self.requests) if one.start is None else one.start
+            if not isinstance(value, int | float) or not one.low <= value <= one.high:
                 bounds = f"between {one.low:g} and {one.high:g}"
                 raise InputError(f"optimise.variable {one.key}: its start {value!r} is no number {bounds}: give start")
             found.append(one.unit(value))
@@ -148,6 +143,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         Returns the variables with active bounds, the quantities at the start and at both optima, and the history.
         Without a feasible point the result is void. Raises InputError.
         """
+        self.check(scene)
         tables = plain_tables(scene)
         begin = self.start(tables)
         with workers(self.evaluations, cores()) as executor:
@@ -161,52 +157,48 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 finer = Search(self, tables, requests, executor, progress)
                 finer.merits([coarse.best])
                 finer.run("COBYQA")
-        first, best = coarse.best, finer.best
+        first, best, values = coarse.best, finer.best, self.values(finer.best)
         points = (coarse, begin), (coarse, first), (finer, first), (finer, best)
-        start, optimum, there, last = (search.found[point][0] or [None] * len(requests) for search, point in points)
-        rows = [
-            (one.key, one.low, one.high, *(one.value(point[i]) for point in (begin, first, best)),
-             "low" if best[i] < ACTIVE else "high" if best[i] > 1.0 - ACTIVE else "")
-            for i, one in enumerate(self.variable)
-        ]  # fmt: skip
-        sizes: list[tuple[Any, ...]] = [(self.quantity, f"{self.goal}d", None)]
-        for one, value in zip(self.limit, last[1:], strict=True):
-            active = value is not None and min(map(abs, one.distances(value))) < ACTIVE
-            sizes.append((one.quantity, ", ".join(f"{name} {size:g}" for name, size, _ in one.sides), active))
+        missing: list[float | None] = [None] * len(requests)
+        figures = [search.found[point][0] or missing for search, point in points]
+        start, there, last = figures[0], figures[2], figures[3]
+        rows = []
+        for one, *at in zip(self.variable, begin, first, best, strict=True):
+            bound = "low" if at[-1] < ACTIVE else "high" if at[-1] > 1.0 - ACTIVE else ""
+            rows.append((one.key, one.low, one.high, *map(one.value, at), bound))
+        roles: list[tuple[str, bool | None]] = [(f"{self.goal}d", None)]
+        for limit, size in zip(self.limit, last[1:], strict=True):
+            active = size is not None and min(map(abs, limit.distances(size))) < ACTIVE
+            roles.append((", ".join(f"{name} {edge:g}" for name, edge, _ in limit.sides), active))
+        units = ["" if (unit := QUANTITIES[name].unit) == "1" else unit for name, _ in requests]
         sizes = [
-            (*head, "" if (unit := QUANTITIES[head[0]].unit) == "1" else unit, *values, label or "the same")
-            for head, *values, label in zip(sizes, start, optimum, there, last, labels, strict=True)
+            (name, *role, unit, *at, label or "the same")
+            for (name, _), role, unit, label, *at in zip(requests, roles, units, labels, *figures, strict=True)
         ]
         columns = [Column("variable"), *(Column(name, format=".8g") for name in ("low", "high", "start", "optimum"))]
+        columns += [Column("finer optimum", format=".10g"), Column("bound")]
         heads = [Column(name) for name in ("quantity", "limit", "active", "unit")]
         heads += [Column(name, format=".6g") for name in ("start", "optimum", "there, finer", "finer optimum")]
-        tables_of_result = [
-            Table("Variables", [*columns, Column("finer optimum", format=".10g"), Column("bound")], rows, NOTES),
-            Table("Objective and limits", [*heads, Column("finer model")], sizes),
-        ]
-        data = {"optimum": self.values(best), "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
+        heads += [Column("finer model")]
+        shown = [Table("Variables", columns, rows, NOTES), Table("Objective and limits", heads, sizes)]
+        data = {"optimum": values, "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
         notes = list(dict.fromkeys(coarse.notes + finer.notes))
-        if not finer.feasible:
-            reason = finer.found[best][1] or "the best one is in the table"
-            remedy = "widen optimise.variable, or relax optimise.limit"
-            margins = [void("the optimum", f"no point satisfies all limits ({reason})", remedy)]
-            return Result("", tables_of_result, warnings=notes, data=data, margins=margins)
-        value, before = float(last[0] or 0.0), start[0]
-        size = max(abs(value), abs(before or 0.0)) or 1.0
-        loss, margins = inf if there[0] is None else abs(there[0] - value) / size, list[Margin]()
+        if not finer.feasible or last[0] is None:
+            failure = f"no point satisfies all limits ({finer.found[best][1] or 'the best one is in the table'})"
+            margins = [void("the optimum", failure, "widen optimise.variable, or relax optimise.limit")]
+            return Result("", shown, warnings=notes, data=data, margins=margins)
+        loss = inf if there[0] is None else abs(there[0] - last[0]) / (max(abs(last[0]), abs(start[0] or 0.0)) or 1.0)
+        margins = []
         if any(label not in ("", EXACT) for label in labels):
             cause = "the optimum moves with the discretisation"
             margins = [Margin(name="discretisation of the optimum", size=loss, failure=cause, remedy="raise count")]
-        at_best = scene_with(tables, _of_scene(data["optimum"]))
-        solved = SolutionCache(at_best.beam)
-        for name, arguments in requests:
-            margins += quantity_margins(name, _with(name, arguments, data["optimum"]), at_best, solved)
-        where = ", ".join(f"{key} = {x:.8g}" for key, x in data["optimum"].items())
-        unit = f" {sizes[0][3]}".rstrip()
-        comparison = "" if before is None else f" (start: {before:.6g}{unit})"
+        at_best, solved, requests = varied(tables, requests, values)
+        margins += [one for request in requests for one in quantity_margins(*request, at_best, solved)]
+        where = ", ".join(f"{key} = {x:.8g}" for key, x in values.items())
+        before = "" if start[0] is None else f" (start: {start[0]:.6g} {units[0]}".rstrip() + ")"
         return Result(
-            summary=f"{self.quantity} {self.goal}d: {value:.6g}{unit}{comparison} at {where}.",
-            tables=tables_of_result,
+            summary=f"{self.quantity} {self.goal}d: {f'{last[0]:.6g} {units[0]}'.rstrip()}{before} at {where}.",
+            tables=shown,
             figures=[Figure("optimise-history", f"Search for the optimum of {self.quantity}", HISTORY, coarse.draw)],
             warnings=notes,
             data=data | {"loss by discretisation": loss, "history": coarse.history},
@@ -233,7 +225,7 @@ class Search:
         """Searches that stopped early."""
         self.sign = 1.0 if study.goal == "minimise" else -1.0
 
-    def merits(self, points: "Sequence[Sequence[float]] | Array") -> list[float]:
+    def merits(self, points: "Iterable[Iterable[float]]") -> list[float]:
         """Merit of each point: the least is the best."""
         keys: list[Point] = [tuple(min(max(float(u), 0.0), 1.0) for u in point) for point in points]
         new = [key for key in dict.fromkeys(keys) if key not in self.found]
@@ -335,42 +327,17 @@ class Search:
 
 def figures_at(task: Task) -> tuple[list[float] | None, str]:
     """(values of quantities on a scene with other values by key, ''), or (None, reason) where there is none."""
-    tables, requests, values = task
     try:
-        scene = scene_with(tables, _of_scene(values))
-        cache, found = SolutionCache(scene.beam), []
+        scene, cache, requests = varied(*task)
+        found = []
         for name, arguments in requests:
-            value = evaluate(name, _with(name, arguments, values), scene, cache)
+            value = evaluate(name, arguments, scene, cache)
             if not isinstance(value, int | float) or not isfinite(value):
                 raise InputError(f"quantity = {name!r} is no finite real number: {value}")
             found.append(float(value))
         return found, ""
     except InputError as error:
         return None, str(error)
-
-
-def value_of(tables: dict[str, Any], requests: Sequence[Request], key: str, field: str) -> Any:
-    """The value of the scene at a key with dots, of an argument of the quantities at one without. Raises InputError."""
-    fields: dict[str, Any] = {}
-    for name, arguments in requests:
-        schema = QUANTITIES.named(name, f"{field.partition('.')[0]}.quantity").schema
-        fields |= {one.name: arguments.get(one.name, one.default) for one in msgspec.structs.fields(schema)}
-        if unknown := next((one for one in arguments if one not in schema.__struct_fields__), None):
-            raise InputError(f"{unknown} is no argument of {name}: {near_name(unknown, schema.__struct_fields__)}")
-    if "." in key:
-        return value_at(tables, key, field)
-    if key not in fields:
-        raise InputError(f"{field} {key} is no key of the scene and no argument: {near_name(key, tuple(fields))}")
-    return fields[key]
-
-
-def _of_scene(values: Mapping[str, float]) -> dict[str, float]:
-    return {key: value for key, value in values.items() if "." in key}
-
-
-def _with(name: str, arguments: dict[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """The arguments of a quantity with those that vary."""
-    return arguments | {key: value for key, value in values.items() if key in QUANTITIES[name].types}
 
 
 def _finer(

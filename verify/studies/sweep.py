@@ -14,7 +14,7 @@ from functools import partial
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from verify.scene.model import Scene
 
+Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
 MOST = 100_000
 UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
 AGREE = "claims that agree"
@@ -89,7 +90,8 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """
         self.check(scene)
         tables, combinations = plain_tables(scene), _combinations(self.over)
-        lines = _lines(file, self, tables) if file else {}
+        header = _header(self, tables) if file else b""
+        lines = _lines(file, header) if file else {}
         todo = [i for i in range(len(combinations)) if i not in lines]
         tasks = [(tables, self, combinations[i], i) for i in todo]
         with (
@@ -101,8 +103,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 lines[todo[i]] = line
                 progress(f"combination {len(lines)} of {len(combinations)}")
         if file:
-            ordered = (lines[i] for i in range(len(combinations)))
-            write_whole(file, b"".join((_header(self, tables), *ordered)).decode(), "--to")
+            write_whole(file, b"".join((header, *(lines[i] for i in sorted(lines)))).decode(), "--to")
         rows = [_row(lines[i]) for i in range(len(combinations))]
         margins = [margin for row in rows for margin in row.pop("margins")]
         if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
@@ -131,13 +132,14 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
     tables, study, combination, number = task
     row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": []}
     try:
-        scene = scene_with(tables, {key: value for key, value in combination.items() if "." in key})
-        cache = SolutionCache(scene.beam)
-        arguments = study.arguments | {key: value for key, value in combination.items() if "." not in key}
-        for one in _quantities(study.quantities):
-            own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
-            row[one.name] = as_plain(evaluate(one.name, own, scene, cache))
-            row["margins"] += map(msgspec.to_builtins, quantity_margins(one.name, own, scene, cache))
+        requests = [
+            (one.name, {key: value for key, value in study.arguments.items() if key in one.types})
+            for one in _quantities(study.quantities)
+        ]
+        scene, cache, requests = varied(tables, requests, combination)
+        for name, arguments in requests:
+            row[name] = as_plain(evaluate(name, arguments, scene, cache))
+            row["margins"] += map(msgspec.to_builtins, quantity_margins(name, arguments, scene, cache))
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
@@ -160,36 +162,26 @@ def _row(line: bytes) -> dict[str, Any]:
 
 def _header(study: Sweep, tables: Mapping[str, Any]) -> bytes:
     """The first line of a sweep's file."""
-    computed_on = {name: table for name, table in tables.items() if name not in ("title", "description")}
-    digest = sha256(json.dumps(computed_on, sort_keys=True).encode()).hexdigest()
+    digest = sha256(json.dumps({**tables, "title": "", "description": ""}, sort_keys=True).encode()).hexdigest()
     provenance = {"versions": versions(), "scene": tables["name"], "sha256 of the scene": digest}
     return json.dumps(provenance | {"sweep": msgspec.to_builtins(study)}).encode() + b"\n"
 
 
-def _lines(file: Path, study: Sweep, tables: Mapping[str, Any]) -> dict[int, bytes]:
+def _lines(file: Path, header: bytes) -> dict[int, bytes]:
     """Lines by number of the combinations that a file has; a new file gets its header. Raises InputError."""
-    header = _header(study, tables)
-    if not exists(file, "--to") or (file.is_file() and not file.stat().st_size):
-        write_whole(file, header.decode(), "--to")
-        return {}
-    text = file.read_bytes()
-    whole_lines = text[: text.rfind(b"\n") + 1]  # a kill may leave half of one
-    first, *lines = whole_lines.splitlines(keepends=True) or [b""]
+    text = file.read_bytes() if exists(file, "--to") and file.is_file() else b""
+    first, *lines = text.splitlines(keepends=True) or [header]
+    lines = [line for line in lines if line.endswith(b"\n")]  # a kill may leave half of one
     try:
-        if first != header:
-            own = json.loads(header)
-            other = [name for name, value in json.loads(first).items() if value != own[name]]
-            raise InputError(
-                f"--to {shown(str(file))} has the rows of another sweep (other {', '.join(other)}): name another file, "
-                "or delete it"
-            )
+        own, other = json.loads(header), json.loads(first)
+        differing = [name for name in own if own[name] != other[name]]
         found = {json.loads(line)["row"]: line for line in lines}
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"--to {shown(str(file))} is no file of a sweep, or damaged: name another file") from None
-    if whole_lines != text:
-        write_whole(file, whole_lines.decode(), "--to")
+    except (ValueError, KeyError, TypeError):
+        differing, found = ["contents"], {}
+    if differing:
+        what = f"has the rows of another sweep (other {', '.join(differing)}): name another file, or delete it"
+        raise InputError(f"--to {shown(str(file))} {what}")
+    write_whole(file, b"".join((header, *lines)).decode(), "--to")
     return found
 
 
@@ -264,21 +256,36 @@ def plain_tables(scene: "Scene") -> dict[str, Any]:
     return tables | {name: study for name, study in studies.items() if name not in UNREAD}
 
 
-def scene_with(tables: dict[str, Any], values: Mapping[str, Any]) -> "Scene":
-    """The scene of plain tables with other values by key, several keys joined by commas. Raises InputError."""
-    for keys, value in values.items():
-        for key in keys.split(","):
-            tables = _put(tables, key.strip().split("."), keys, value)
-    return scene_from(tables)
+def varied(
+    tables: dict[str, Any], requests: Sequence[Request], values: Mapping[str, Any]
+) -> "tuple[Scene, SolutionCache, list[Request]]":
+    """The scene, its cache and the quantities (name, arguments) with other values by key; keys may be joined by commas.
+
+    A key with a dot is one of the scene, one without an argument of the quantities that have it. Raises InputError.
+    """
+    own, known = {key: value for key, value in values.items() if "." not in key}, dict[str, None]()
+    for joined in values.keys() - own:
+        for key in joined.split(","):
+            tables = _put(tables, key.strip().split("."), joined, values[joined])
+    found = []
+    for name, arguments in requests:
+        types = QUANTITIES.named(name).types
+        known |= dict.fromkeys(types)
+        found.append((name, arguments | {key: value for key, value in own.items() if key in types}))
+        QUANTITIES[name].bind(found[-1][1])
+    if unknown := next((key for key in own if key not in known), None):
+        raise InputError(f"{unknown} is no argument of the quantities: {near_name(unknown, tuple(known))}")
+    scene = scene_from(tables)
+    return scene, SolutionCache(scene.beam), found
 
 
-def value_at(tables: dict[str, Any], keys: str, field: str) -> Any:
-    """The value at the first of several keys, for * of the first entry. Raises InputError for an unknown key."""
-    paths = [key.strip().split(".") for key in keys.split(",")]
-    for path in paths:
-        _put(tables, path, f"{field} {keys}", None)
+def value_at(tables: dict[str, Any], key: str, requests: Sequence[Request]) -> Any:
+    """The value of a scene's key, of the first of several, or of an argument; None where it has none."""
+    if "." not in key:
+        return next((arguments[key] for _, arguments in requests if key in arguments), None)
     here: Any = tables
-    for step in paths[0]:
+    for step in key.partition(",")[0].strip().split("."):
+        _put(here, [step], key, None)  # which refuses an unknown one
         here = here[0 if step == "*" else int(step)] if isinstance(here, list | tuple) else here[step]
     return here
 
