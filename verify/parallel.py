@@ -7,8 +7,9 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
+from signal import SIG_IGN, SIGINT, signal
 from typing import Any, TypeVar
 
 from verify.errors import InputError, shown
@@ -33,14 +34,14 @@ def cluster(where: str | int) -> Iterator[None]:
     try:
         from distributed import Client, LocalCluster
     except ImportError:
-        install = "pip install 'fem-segment-verify[cluster]'"
-        raise InputError(
-            f"cluster = {where!r}: dask.distributed is not installed, {install}, or leave it out"
-        ) from None
+        remedy = "pip install 'fem-segment-verify[cluster]', or leave it out"
+        raise InputError(f"cluster = {shown(where)}: dask.distributed is not installed, {remedy}") from None
     with ExitStack() as stack:
         address: Any = where
         if isinstance(where, int):
-            with _uninterrupted():
+            with ExitStack() as starting:
+                with suppress(ValueError):  # outside of the main thread
+                    starting.callback(signal, SIGINT, signal(SIGINT, SIG_IGN))  # workers leave Ctrl-C to this process
                 address = LocalCluster(n_workers=where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
             stack.enter_context(address)
         try:
@@ -58,22 +59,6 @@ def cluster(where: str | int) -> Iterator[None]:
             yield
         finally:
             CLUSTER.reset(token)
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Processes that start here ignore Ctrl-C, which this one handles, and then ends them."""
-    from signal import SIG_IGN, SIGINT, signal
-
-    try:
-        before = signal(SIGINT, SIG_IGN)
-    except ValueError:  # only the main thread has handlers
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal(SIGINT, before)
 
 
 def cores() -> int | None:

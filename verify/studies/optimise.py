@@ -8,6 +8,7 @@ and treats limits as constraints. Before it is reported the optimum is searched 
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass, field
 from math import inf, isfinite, log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
@@ -22,6 +23,7 @@ from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, cores, workers
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Figure, Result, Table
+from verify.scene.model import Limits
 from verify.studies.base import Progress, Study
 from verify.studies.sweep import Request, plain_tables, quantity_margins, value_at, varied
 
@@ -70,27 +72,16 @@ class Variable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         return (value - self.low) / (self.high - self.low)
 
 
-class Limit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Limit(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A quantity that has to stay within limits. Raises InputError without one."""
 
-    quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
-    arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
-    at_least: Annotated[float, Meta(description="Lower limit, in the quantity's unit.")] | None = None
-    at_most: Annotated[float, Meta(description="Upper limit, in the quantity's unit.")] | None = None
-
     def __post_init__(self) -> None:
-        if self.at_least is None and self.at_most is None:
-            raise InputError(f"optimise.limit {self.quantity}: give at_least, at_most or both")
-
-    @property
-    def sides(self) -> list[tuple[str, float, float]]:
-        """(name, limit, sign of a value's distance from it)."""
-        both = (("at least", self.at_least, 1.0), ("at most", self.at_most, -1.0))
-        return [(name, limit, sign) for name, limit, sign in both if limit is not None]
+        self.check(f"optimise.limit.{self.id}", "at_least", "at_most", other=None)
 
     def distances(self, value: float) -> list[float]:
         """Distance of a value from each limit, relative to it unless it is zero; negative where violated."""
-        return [sign * (value - limit) / (abs(limit) or 1.0) for _, limit, sign in self.sides]
+        sides = (self.at_least, 1.0), (self.at_most, -1.0)
+        return [sign * (value - limit) / (abs(limit) or 1.0) for limit, sign in sides if limit is not None]
 
 
 class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -147,36 +138,31 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         tables = plain_tables(scene)
         begin = self.start(tables)
         with workers(self.evaluations, cores()) as executor:
-            coarse = Search(self, tables, self.requests, executor, progress)
+            coarse = finer = Search(self, tables, self.requests, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:
                 coarse.run(stage)
             requests, labels = _finer(tables, self.requests, self.values(coarse.best))
-            finer = coarse
             if coarse.feasible and any(labels):
                 finer = Search(self, tables, requests, executor, progress)
                 finer.merits([coarse.best])
                 finer.run("COBYQA")
-        first, best, values = coarse.best, finer.best, self.values(finer.best)
-        points = (coarse, begin), (coarse, first), (finer, first), (finer, best)
+        points = (coarse, begin), (coarse, coarse.best), (finer, coarse.best), (finer, finer.best)
+        best, values = finer.best, self.values(finer.best)
         missing: list[float | None] = [None] * len(requests)
-        figures = [search.found[point][0] or missing for search, point in points]
-        start, there, last = figures[0], figures[2], figures[3]
-        rows = []
-        for one, *at in zip(self.variable, begin, first, best, strict=True):
+        start, optimum, there, last = (search.found[point][0] or missing for search, point in points)
+        rows, sizes = [], list[tuple[Any, ...]]()
+        for one, *at in zip(self.variable, begin, coarse.best, best, strict=True):
             bound = "low" if at[-1] < ACTIVE else "high" if at[-1] > 1.0 - ACTIVE else ""
             rows.append((one.key, one.low, one.high, *map(one.value, at), bound))
-        roles: list[tuple[str, bool | None]] = [(f"{self.goal}d", None)]
-        for limit, size in zip(self.limit, last[1:], strict=True):
-            active = size is not None and min(map(abs, limit.distances(size))) < ACTIVE
-            roles.append((", ".join(f"{name} {edge:g}" for name, edge, _ in limit.sides), active))
-        units = ["" if (unit := QUANTITIES[name].unit) == "1" else unit for name, _ in requests]
-        sizes = [
-            (name, *role, unit, *at, label or "the same")
-            for (name, _), role, unit, label, *at in zip(requests, roles, units, labels, *figures, strict=True)
-        ]
-        columns = [Column("variable"), *(Column(name, format=".8g") for name in ("low", "high", "start", "optimum"))]
-        columns += [Column("finer optimum", format=".10g"), Column("bound")]
+        for i, (name, _) in enumerate(requests):
+            role, unit, active = f"{self.goal}d", QUANTITIES[name].unit, None
+            if i and (size := last[i]) is not None:
+                role, active = self.limit[i - 1].limits, min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
+            head = name, role, active, "" if unit == "1" else unit
+            sizes.append((*head, start[i], optimum[i], there[i], last[i], labels[i] or "the same"))
+        names = ("low", "high", "start", "optimum", "finer optimum")
+        columns = [Column("variable"), *(Column(name, format=".9g") for name in names), Column("bound")]
         heads = [Column(name) for name in ("quantity", "limit", "active", "unit")]
         heads += [Column(name, format=".6g") for name in ("start", "optimum", "there, finer", "finer optimum")]
         heads += [Column("finer model")]
@@ -194,10 +180,10 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             margins = [Margin(name="discretisation of the optimum", size=loss, failure=cause, remedy="raise count")]
         at_best, solved, requests = varied(tables, requests, values)
         margins += [one for request in requests for one in quantity_margins(*request, at_best, solved)]
+        before = "" if start[0] is None else f" (start: {start[0]:.6g})"
         where = ", ".join(f"{key} = {x:.8g}" for key, x in values.items())
-        before = "" if start[0] is None else f" (start: {start[0]:.6g} {units[0]}".rstrip() + ")"
         return Result(
-            summary=f"{self.quantity} {self.goal}d: {f'{last[0]:.6g} {units[0]}'.rstrip()}{before} at {where}.",
+            summary=f"{self.quantity} {self.goal}d: {last[0]:.6g}{f' {sizes[0][3]}'.rstrip()}{before} at {where}.",
             tables=shown,
             figures=[Figure("optimise-history", f"Search for the optimum of {self.quantity}", HISTORY, coarse.draw)],
             warnings=notes,
@@ -206,28 +192,28 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
 
+@dataclass
 class Search:
     """Objective and limits on one model, in variables from 0 to 1; every point is evaluated once and recorded."""
 
-    def __init__(
-        self,
-        study: Optimise,
-        tables: dict[str, Any],
-        requests: Sequence[Request],
-        executor: Executor | None,
-        progress: Progress,
-    ) -> None:
-        self.study, self.tables, self.requests = study, tables, requests
-        self.executor, self.progress = executor, progress
-        self.found: dict[Point, tuple[list[float] | None, str]] = {}
-        """(values, '') or (None, reason) of the requests, by point."""
-        self.notes: list[str] = []
-        """Searches that stopped early."""
-        self.sign = 1.0 if study.goal == "minimise" else -1.0
+    study: Optimise
+    tables: dict[str, Any]
+    requests: list[Request]
+    executor: Executor | None
+    progress: Progress
+    found: dict[Point, tuple[list[float] | None, str]] = field(default_factory=dict)
+    """(values, '') or (None, reason) of the requests, by point."""
+    notes: list[str] = field(default_factory=list)
+    """Searches that stopped early."""
+
+    @property
+    def sign(self) -> float:
+        """Of the objective in its merit."""
+        return 1.0 if self.study.goal == "minimise" else -1.0
 
     def merits(self, points: "Iterable[Iterable[float]]") -> list[float]:
         """Merit of each point: the least is the best."""
-        keys: list[Point] = [tuple(min(max(float(u), 0.0), 1.0) for u in point) for point in points]
+        keys: list[Point] = [tuple(map(float, point)) for point in points]
         new = [key for key in dict.fromkeys(keys) if key not in self.found]
         tasks: list[Task] = [(self.tables, self.requests, self.study.values(key)) for key in new]
         results = dict(completed(figures_at, tasks, self.executor if len(new) > 1 else None))
@@ -266,17 +252,13 @@ class Search:
 
     def run(self, stage: str) -> None:
         """One method, from the best point so far. Raises InputError where it is not installed."""
-        from scipy.optimize import Bounds, NonlinearConstraint, differential_evolution, minimize
+        from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
         start, most, d, before = self.best, self.study.evaluations, len(self.study.variable), len(self.found)
         if stage == "DE":
-            random: Any = {
-                "rng": self.study.seed,
-                "popsize": POPULATION,
-                "maxiter": max(most // (POPULATION * d) - 1, 1),
-            }
-            batch: Any = {"vectorized": True, "updating": "deferred", "polish": False}
-            differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, x0=start, **random, **batch)
+            options: Any = {"vectorized": True, "updating": "deferred", "polish": False, "rng": self.study.seed}
+            options |= {"popsize": POPULATION, "maxiter": max(most // (POPULATION * d) - 1, 1), "x0": start}
+            differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, **options)
             return
         if stage == "CMA-ES":
             try:
@@ -295,7 +277,7 @@ class Search:
 
         def values(x: "Array") -> list[float] | None:
             self.merits([x])
-            return self.found[tuple(min(max(float(u), 0.0), 1.0) for u in x)][0]
+            return self.found[tuple(map(float, x))][0]
 
         def objective(x: "Array") -> float:
             return self.sign * here[0] / size if (here := values(x)) else 1e3
@@ -304,9 +286,8 @@ class Search:
             return self.distances(here) if (here := values(x)) else [-1.0] * n
 
         limits = [NonlinearConstraint(distances, 0.0, inf)] if n else []
-        options = {"maxfev": most, "initial_tr_radius": 0.05, "final_tr_radius": FINAL}
-        box = Bounds([0.0] * d, [1.0] * d)
-        minimize(objective, start, method=stage, bounds=box, constraints=limits, options=options)
+        radii = {"maxfev": most, "initial_tr_radius": 0.05, "final_tr_radius": FINAL}
+        minimize(objective, start, method=stage, bounds=[(0.0, 1.0)] * d, constraints=limits, options=radii)
         if len(self.found) - before >= most:
             self.notes.append(f"The local search stopped at its {most} points: raise optimise.evaluations.")
 
@@ -341,7 +322,7 @@ def figures_at(task: Task) -> tuple[list[float] | None, str]:
 
 
 def _finer(
-    tables: dict[str, Any], requests: Sequence[Request], values: dict[str, float]
+    tables: dict[str, Any], requests: list[Request], values: dict[str, float]
 ) -> tuple[list[Request], list[str]]:
     """Each quantity on the exact beam where it has that model, else with twice the count; with twice the time steps.
 

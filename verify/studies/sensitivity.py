@@ -1,8 +1,8 @@
 """Shares of uncertain inputs in the variance of a quantity: Sobol's first-order and total indices.
 
-The first-order share S_i = Var(E[Y|X_i]) / Var(Y) is what the knowledge of X_i would remove; the total share T_i is what
-remains where all others are known, interactions included (I. M. Sobol', Math. Comput. Simul. 55 (2001) 271-280; estimator
-of A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, by `scipy.stats.sobol_indices`).
+The first-order share Var(E[Y|X]) / Var(Y) is what the knowledge of X alone would remove, the total share what remains
+where all others are known (I. M. Sobol', Math. Comput. Simul. 55 (2001) 271-280). `scipy.stats.sobol_indices` estimates
+them (A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270).
 """
 
 from functools import partial
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from verify.scene.model import Scene
 
 CONFIDENCE = 0.95
-CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling by bootstrap."
+CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling."
 NOTES = [
-    "first order: variance that the knowledge of the input alone removes; total: what remains where all others are known.",
-    "Intervals are those of the sampling (95 %, bootstrap); they shrink as 1/sqrt(n), raise n.",
+    "first order: removed by knowledge of the input alone; total: remains where all others are known.",
+    "Intervals: 95 % of the sampling by bootstrap; four times n halves them.",
 ]
 
 
@@ -132,7 +132,8 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             """First-order and total shares of resampled points, (2, inputs, resamples), by Saltelli's estimator."""
             (a, b), ab = both[:, index], mixed[:, index]
             variance = both[:, index].var(axis=(0, -1))
-            return np.stack([(b * (ab - a)).mean(axis=-1), 0.5 * ((a - ab) ** 2).mean(axis=-1)]) / variance
+            shares: Array = np.stack([(b * (ab - a)).mean(axis=-1), 0.5 * ((a - ab) ** 2).mean(axis=-1)]) / variance
+            return shares
 
         # the bootstrap of `SobolResult` has no seed
         options: Any = {"confidence_level": CONFIDENCE, "method": "percentile", "vectorized": True, "rng": self.seed}
@@ -150,8 +151,8 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         what, largest = f"ln |{self.quantity}|" if self.logarithm else self.quantity, int(np.argmax(total))
         at, cache, requests = varied(tables, requests, {})
         return Result(
-            summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}{unit}; "
-            f"the largest share in its variance, {total[largest]:.3f}, is that of {keys[largest]}.",
+            summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}; "
+            f"{keys[largest]} has the largest share in its variance, {total[largest]:.3f}.",
             tables=[Table(f"Shares in the variance of {what}", columns, rows, NOTES)],
             figures=[Figure("sensitivity-shares", f"Shares in the variance of {what}", CAPTION, partial(_draw, rows))],
             data={"points": len(values), "mean": centre, "sd": both.std(), "sum of first order": first.sum()},
