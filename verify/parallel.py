@@ -17,8 +17,8 @@ from verify.errors import InputError, shown
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
-CLUSTER: ContextVar[Executor | None] = ContextVar("cluster", default=None)
-"""Executor of the cluster inside `with cluster(...)`."""
+CLIENT: ContextVar[Any] = ContextVar("client", default=None)
+"""Client of the cluster inside `with cluster(...)`."""
 PATIENCE = 30.0
 """Time to reach a scheduler and its first worker, s."""
 
@@ -54,11 +54,11 @@ def cluster(where: str | int) -> Iterator[None]:
         for worker, found in theirs.items():
             if found != versions():
                 raise InputError(f"worker {worker} has {found}, this machine {versions()}: install the same versions")
-        token = CLUSTER.set(client.get_executor(pure=False))
+        token = CLIENT.set(client)
         try:
             yield
         finally:
-            CLUSTER.reset(token)
+            CLIENT.reset(token)
 
 
 def cores() -> int | None:
@@ -75,21 +75,22 @@ def workers(most: int, processes: int | None = None) -> Iterator[Executor | None
     text = str(processes or os.environ.get(VARIABLE, "") or 1)
     if not (text.isascii() and text.isdigit() and int(text)):
         raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
-    remote, n = CLUSTER.get(), min(int(text), most)
-    if remote is not None or n < 2:
-        yield remote
+    client, n = CLIENT.get(), min(int(text), most)
+    if client is None and n < 2:
+        yield None
         return
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
     # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
-    pool = ProcessPoolExecutor(n, mp_context=get_context("fork" if sys.platform == "linux" else "spawn"))
-    complete = False
+    context = get_context("fork" if sys.platform == "linux" else "spawn")
+    executor = client.get_executor(pure=False) if client else ProcessPoolExecutor(n, mp_context=context)
     try:
-        yield pool
-        complete = True
-    finally:
-        pool.shutdown(wait=complete, cancel_futures=True)
+        yield executor
+    except BaseException:
+        executor.shutdown(wait=False)  # on a cluster this cancels what is pending
+        raise
+    executor.shutdown()
 
 
 def completed(
@@ -98,10 +99,10 @@ def completed(
     """(index, result) of each item as it completes. Function and items must be picklable unless `executor` is None.
 
     With `first_here` the first item runs in this process, so that forked workers inherit what it compiles. Raises the
-    error of the first item that fails, pending items are cancelled; and InputError where a worker process dies.
+    error of the first item that fails, the others are cancelled; and InputError where a process dies.
     """
     todo = list(items)
-    own = len(todo) if executor is None else int(first_here and executor is not CLUSTER.get())
+    own = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
     for i, item in enumerate(todo[:own]):
         yield i, function(item)
     if executor is None or own == len(todo):
@@ -120,8 +121,9 @@ def completed(
             ) from None
         raise
     finally:
-        for future in futures:
-            future.cancel()
+        if CLIENT.get() is None:  # `shutdown` of a pool that is collected at once may cancel nothing (CPython 3.11)
+            for future in futures:
+                future.cancel()
 
 
 def map_processes(
