@@ -61,18 +61,13 @@ def cluster(where: str | int) -> Iterator[None]:
             CLIENT.reset(token)
 
 
-def cores() -> int | None:
-    """VERIFY_JOBS where it is set (None), else the number of cores: for `workers` of what takes long."""
-    return None if os.environ.get(VARIABLE) else os.cpu_count()
-
-
 @contextmanager
-def workers(most: int, processes: int | None = None) -> Iterator[Executor | None]:
-    """An executor for `most` items at a time: the cluster's, else of `processes` (default: VERIFY_JOBS, 1 unless set).
+def workers(most: int, processes: int | None = None, unset: int | None = 1) -> Iterator[Executor | None]:
+    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS, else `unset`.
 
     None where one process is enough. Raises InputError unless VERIFY_JOBS is a positive integer.
     """
-    text = str(processes or os.environ.get(VARIABLE, "") or 1)
+    text = str(processes or os.environ.get(VARIABLE, "") or unset)
     if not (text.isascii() and text.isdigit() and int(text)):
         raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
     client, n = CLIENT.get(), min(int(text), most)
@@ -115,10 +110,8 @@ def completed(
             yield futures[future], future.result()
     except Exception as error:
         if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
-            raise InputError(
-                "a worker process was killed, by the system where memory is short: run again with fewer processes "
-                f"({VARIABLE}), a sweep --to a file then continues"
-            ) from None
+            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file then continues"
+            raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise
     finally:
         if CLIENT.get() is None:  # `shutdown` of a pool that is collected at once may cancel nothing (CPython 3.11)

@@ -6,6 +6,7 @@ populations need one number for each point, which an executor evaluates. The loc
 and treats limits as constraints. Before it is reported the optimum is searched again on a finer model, from the first.
 """
 
+import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -20,7 +21,7 @@ from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
-from verify.parallel import completed, cores, workers
+from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.model import Limits
@@ -137,7 +138,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self.check(scene)
         tables = plain_tables(scene)
         begin = self.start(tables)
-        with workers(self.evaluations, cores()) as executor:
+        with workers(self.evaluations, unset=os.cpu_count()) as executor:
             coarse = finer = Search(self, tables, self.requests, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:

@@ -5,6 +5,7 @@ where all others are known (I. M. Sobol', Math. Comput. Simul. 55 (2001) 271-280
 them (A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270).
 """
 
+import os
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -12,7 +13,7 @@ import msgspec
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.parallel import completed, cores, workers
+from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
@@ -35,13 +36,10 @@ NOTES = [
 
 
 class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An uncertain number of the scene. Raises InputError for parameters that are not its distribution's."""
+    """An uncertain number of the scene, around its value there. Raises InputError for another's parameters."""
 
     key: Annotated[str, Meta(description="'beam.youngs_modulus', 'drive.force.*.amplitude'; or an argument.")]
     distribution: Literal["normal", "lognormal", "uniform"] = "normal"
-    centre: Annotated[float, Meta(description="Mean, of lognormal the median. Default: the scene's value.")] | None = (
-        None
-    )
     sd: Annotated[float, Meta(gt=0, description="Standard deviation; of lognormal that of the logarithm.")] | None = (
         None
     )
@@ -49,24 +47,21 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     high: Annotated[float, Meta(description="Of uniform, in the key's unit.")] | None = None
 
     def __post_init__(self) -> None:
-        bounds = self.low is not None and self.high is not None and self.low < self.high
-        if self.distribution == "uniform" and not (bounds and self.sd is None and self.centre is None):
-            raise InputError(
-                f"sensitivity.input {self.key}: a uniform distribution has low below high, give both alone"
-            )
-        if self.distribution != "uniform" and (self.sd is None or self.low is not None or self.high is not None):
-            raise InputError(f"sensitivity.input {self.key}: a {self.distribution} distribution has sd, give it alone")
+        given, bounds = (self.sd is not None, self.low is not None, self.high is not None), (self.low or 0.0, self.high)
+        if given != ((False, True, True) if self.distribution == "uniform" else (True, False, False)):
+            raise InputError(f"sensitivity.input {self.key}: give low and high for uniform, sd alone for the others")
+        if bounds[1] is not None and bounds[0] >= bounds[1]:
+            raise InputError(f"sensitivity.input {self.key}: low = {self.low!r}: give less than high")
 
     def of(self, value: Any) -> Any:
-        """The distribution of `scipy.stats` for the scene's value. Raises InputError."""
+        """The distribution of `scipy.stats` around the scene's value. Raises InputError."""
         from scipy.stats import lognorm, norm, uniform
 
         if self.low is not None and self.high is not None:
             return uniform(self.low, self.high - self.low)
-        centre = value if self.centre is None else self.centre
-        if not isinstance(centre, int | float) or (self.distribution == "lognormal" and centre <= 0.0):
-            raise InputError(f"sensitivity.input {self.key}: its centre {centre!r} is no suitable number: give centre")
-        return norm(centre, self.sd) if self.distribution == "normal" else lognorm(self.sd, scale=centre)
+        if not isinstance(value, int | float) or (self.distribution == "lognormal" and value <= 0.0):
+            raise InputError(f"sensitivity.input {self.key}: {value!r} is no suitable number, set it in the scene")
+        return norm(value, self.sd) if self.distribution == "normal" else lognorm(self.sd, scale=value)
 
 
 class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -122,7 +117,7 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return np.array([values[-len(tasks) :]])
 
         distributions = self.distributions(tables)
-        with workers(self.n, cores()) as executor:
+        with workers(self.n, unset=os.cpu_count()) as executor:
             shares = sobol_indices(func=quantity, n=self.n, dists=distributions, rng=self.seed)
         both, mixed = np.reshape(values[: 2 * self.n], (2, self.n)), np.reshape(values[2 * self.n :], (self.n, -1)).T
         centre = both.mean()

@@ -26,7 +26,7 @@ from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
 from verify.files import appending, exists, write_whole
 from verify.linear.registry import EXACT, MODELS
-from verify.parallel import completed, cores, versions, workers
+from verify.parallel import completed, versions, workers
 from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.load import scene_from
@@ -96,7 +96,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         tasks = [(tables, self, combinations[i], i) for i in todo]
         with (
             appending(file or Path(os.devnull), "--to") as append,
-            workers(len(todo) - 1, cores()) as executor,
+            workers(len(todo) - 1, unset=os.cpu_count()) as executor,
         ):
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
                 append(line)
