@@ -38,18 +38,21 @@ def cluster(where: str | int) -> Iterator[None]:
         raise InputError(f"cluster = {shown(where)}: dask.distributed is not installed, {remedy}") from None
     with ExitStack() as stack:
         address: Any = where
-        if isinstance(where, int):
-            with ExitStack() as starting:
-                with suppress(ValueError):  # outside of the main thread
-                    starting.callback(signal, SIGINT, signal(SIGINT, SIG_IGN))  # workers leave Ctrl-C to this process
-                address = LocalCluster(n_workers=where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
-            stack.enter_context(address)
+        remedy = "start `dask scheduler` and `dask worker` with verify installed, or correct the address"
         try:
+            if isinstance(where, int):
+                remedy = "in a script of your own call it below if __name__ == '__main__'"
+                with ExitStack() as starting:
+                    with suppress(ValueError):  # outside of the main thread
+                        starting.callback(
+                            signal, SIGINT, signal(SIGINT, SIG_IGN)
+                        )  # workers leave Ctrl-C to this process
+                    address = LocalCluster(where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
+                stack.enter_context(address)
             client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
             client.wait_for_workers(1, timeout=PATIENCE)
             theirs = client.run(versions)
-        except (OSError, ValueError, ImportError) as error:
-            remedy = "start `dask scheduler` and `dask worker` with verify installed, or correct the address"
+        except (OSError, ValueError, ImportError, RuntimeError) as error:
             raise InputError(f"cluster = {shown(where)} has no usable worker ({error}): {remedy}") from None
         for worker, found in theirs.items():
             if found != versions():

@@ -94,7 +94,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
     arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
-    goal: Literal["minimise", "maximise"] = "minimise"
+    goal: Annotated[Literal["minimise", "maximise"], Meta(description="What to do with it.")] = "minimise"
     variable: Annotated[tuple[Variable, ...], Meta(min_length=1, description="What varies.")]
     limit: Annotated[tuple[Limit, ...], Meta(description="Limits of other quantities.")] = ()
     method: Annotated[

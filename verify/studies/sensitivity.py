@@ -39,7 +39,9 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """An uncertain number of the scene, around its value there. Raises InputError for another's parameters."""
 
     key: Annotated[str, Meta(description="'beam.youngs_modulus', 'drive.force.*.amplitude'; or an argument.")]
-    distribution: Literal["normal", "lognormal", "uniform"] = "normal"
+    distribution: Annotated[
+        Literal["normal", "lognormal", "uniform"], Meta(description="The scene's value is its mean, or its median.")
+    ] = "normal"
     sd: Annotated[float, Meta(gt=0, description="Standard deviation; of lognormal that of the logarithm.")] | None = (
         None
     )
