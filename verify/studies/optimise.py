@@ -160,11 +160,20 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             bound = "low" if at[-1] < ACTIVE else "high" if at[-1] > 1.0 - ACTIVE else ""
             rows.append((one.key, one.low, one.high, *map(one.value, at), bound))
         for i, (name, _) in enumerate(requests):
-            role, unit, active = f"{self.goal}d", QUANTITIES[name].unit, None
+            role, unit, active = self.limit[i - 1].limits if i else f"{self.goal}d", QUANTITIES[name].unit, None
             if i and (size := last[i]) is not None:
-                role, active = self.limit[i - 1].limits, min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
+                active = min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
             head = name, role, active, "" if unit == "1" else unit
-            sizes.append((*head, start[i], optimum[i], there[i], last[i], labels[i] or "the same"))
+            sizes.append(
+                (
+                    *head,
+                    start[i],
+                    optimum[i],
+                    there[i],
+                    last[i],
+                    labels[i] if labels[i] and finer is not coarse else "the same",
+                )
+            )
         shown = [
             Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES),
             Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], sizes),
