@@ -37,7 +37,10 @@ QUASI_STATIC = 0.05
 
 
 class Mounted(msgspec.Struct, frozen=True, kw_only=True):
-    """An actuator on a beam, with one electrical condition: a voltage, a current (0: open electrodes) or a load."""
+    """An actuator on a beam, with one electrical condition: a voltage, a current (0: open electrodes) or a load.
+
+    A voltage with a load is that of a source behind the load, in series.
+    """
 
     actuator: Actuator
     position: float
@@ -50,8 +53,10 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
     """Electrical load."""
 
     def __post_init__(self) -> None:
-        if sum(one is not None for one in (self.voltage, self.current, self.load)) != 1:
-            raise InputError(f"actuator at position = {self.position!r} m: give one of voltage, current and load")
+        given = [one is not None for one in (self.voltage, self.current, self.load)]
+        if sum(given) != 1 and given != [True, False, True]:
+            only = "one of voltage, current and load, or voltage and load"
+            raise InputError(f"actuator at position = {self.position!r} m: give {only}")
 
     def loads(self, beam: Beam) -> tuple[PointLoad, ...]:
         """The load of its mechanical port for F = 1. Raises InputError off the beam, and at a fixed point of it."""
@@ -68,11 +73,15 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""
         factor: Any = port.force_factor
-        if self.voltage is not None:
+        if self.voltage is not None and self.load is None:
             return factor * self.voltage, complex(port.short_impedance)
-        if self.load is None:
-            return factor / port.blocked_admittance * self.current, port.loaded_impedance()
-        return 0.0, port.loaded_impedance(self.load.admittance(omega))
+        current, load = self.feed(omega)
+        return factor / (port.blocked_admittance + load) * current, port.loaded_impedance(load)
+
+    def feed(self, omega: float) -> tuple[complex, complex]:
+        """(current of a source in parallel, A, admittance of the load, S) of all conditions but a voltage alone."""
+        load = 0.0 if self.load is None else complex(self.load.admittance(omega))
+        return (load * self.voltage if self.voltage is not None else self.current or 0.0), load
 
 
 class ActuatorState(msgspec.Struct, frozen=True, kw_only=True):
@@ -113,8 +122,11 @@ def on_beam(
     *,
     forces: Loads = (),
     devices: Devices = (),
+    modal_damping: float = 0.0,
 ) -> ActuatedBeam:
     """The steady field of a beam with actuators, under other harmonic loads and with passive devices.
+
+    `modal_damping` as in `BeamModel.harmonic`.
 
     Raises InputError for an actuator off the beam, two at one place or an active device, and ResonanceError at an
     undamped resonance of the beam without its actuators.
@@ -135,11 +147,11 @@ def on_beam(
         # the weights of a transverse port are those of a device, which include the beam's compliance at its own place
         own = [Device(position=one.position, amplitude=1.0) for one in load if isinstance(one, PointForce)]
         turning = [one for one in load if isinstance(one, PointMoment)]
-        return cut.harmonic(turning, frequency_hz, devices=(*passive, *own))
+        return cut.harmonic(turning, frequency_hz, devices=(*passive, *own), modal_damping=modal_damping)
 
     try:
         units = [field(load) for load in loads]
-        rest = [cut.harmonic(others, frequency_hz, devices=passive)] if others else []
+        rest = [cut.harmonic(others, frequency_hz, devices=passive, modal_damping=modal_damping)] if others else []
     except ResonanceError as error:
         raise ResonanceError(
             f"{error}; the fields of actuators are superposed on the beam without them, whose resonance this is"
@@ -172,9 +184,9 @@ def _displacement(field: HarmonicField, loads: tuple[PointLoad, ...]) -> complex
 
 def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:
     b, y, z = (complex(one) for one in (port.force_factor, port.blocked_admittance, port.short_impedance))
-    if mounted.voltage is None:
-        load = 0.0 if mounted.load is None else complex(mounted.load.admittance(omega))
-        voltage = ((mounted.current or 0.0) - b * v) / (y + load)
+    if mounted.voltage is None or mounted.load is not None:
+        fed, load = mounted.feed(omega)
+        voltage = (fed - b * v) / (y + load)
     else:
         voltage = complex(mounted.voltage)
     current = y * voltage + b * v if mounted.current is None else complex(mounted.current)
@@ -189,6 +201,20 @@ def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: floa
         power_out=float(0.5 * (force * np.conj(v)).real),
         loss=float(0.5 * lost),
     )
+
+
+class QuasiStatic(Actuator, frozen=True, kw_only=True):
+    """An actuator far below its resonance, whose spring and mass are part of the beam."""
+
+    force_factor: float
+    """B, N/V."""
+    capacitance: float
+    """C at rest, F."""
+
+    def port(self, omega: Any) -> Port:
+        """The port at angular frequencies omega (rad/s), a number or (n,)."""
+        own = 1j * omega * self.capacitance
+        return Port(force_factor=self.force_factor, short_impedance=0.0 * omega, blocked_admittance=own)
 
 
 class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,0 +1,172 @@
+"""Actuators with electrical circuits on a beam in time: complex modal rows of beam and circuits together.
+
+A circuit is an actuator of capacitance C with the modal loads b per volt, and branches of resistance R, inductance L
+and capacitance C_s in series that carry the charges Q into it from a source E:
+
+    L Q'' + R Q' + Q/C_s + V = E,   V = (sum Q - b^T q)/C,   q'' + 2 zeta omega q' + omega^2 q = f + b V.
+
+In x = (q, Q) these are M x'' + D x' + K x = F with symmetric matrices (N. W. Hagood, A. von Flotow, J. Sound Vib.
+146:243 (1991), for one mode). Left eigenvectors are therefore the right ones, u, and x = Re(u z) with
+z' = lambda z + c u^T F, c = 2 / (u^T (2 lambda M + D) u), half of that for a real rate (F. Tisseur, K. Meerbergen, SIAM
+Review 43:235 (2001), sec. 3.5). The spring and the mass of an actuator are part of the beam.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from verify.actuators.on_beam import Mounted
+from verify.arrays import Array, ComplexArray
+from verify.dynamics.excitation import RESONANCE, Forced, Rows, interleaved, modal_rows
+from verify.errors import InputError, ResonanceError
+from verify.linear.field import phasor
+from verify.linear.time_basis import Ratio, TimeBasis
+from verify.problem.beam import Beam, PointLoad
+
+MECHANICAL = 0.25
+"""Share of the energy in the modes below which a row is that of a circuit."""
+DEFECTIVE = 1e-8
+"""Bilinear over absolute form of a vector at which two rates coincide and the rows lose half of their digits."""
+GROWTH = 1e-9
+"""Growth rate of an unstable row, relative to the largest rate."""
+
+
+class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
+    """Rows of beam and circuits with complex psi; coordinates are modal amplitudes (sqrt(kg) m) and charges (C)."""
+
+    backward_loads: ComplexArray
+    readings: ComplexArray
+    """Voltages and charges of all actuators, (n, 2 circuits)."""
+    vectors: ComplexArray
+    """u, (coordinates, n)."""
+    inertia: Array
+    """M, (coordinates,): 1 and inductances, H."""
+    damping: Array
+    """D, (coordinates,): 2 zeta omega and resistances, ohm."""
+    stiffness: Array
+    """K, (coordinates, coordinates)."""
+    forces: ComplexArray
+    """Phasors of F, (coordinates,)."""
+    modes: int
+    """Number of modal amplitudes, the first coordinates."""
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates of the state."""
+        return len(self.inertia)
+
+    def shapes(self, basis: TimeBasis) -> Callable[[Array, int], ComplexArray]:
+        """(x, derivative) -> psi, (n, len(x)), on a basis."""
+        mechanical = self.vectors[: self.modes].T
+        return lambda x, derivative: np.asarray(mechanical @ basis.shapes(x, derivative))
+
+    def state(self, z: ComplexArray) -> tuple[Array, Array]:
+        """(x, dx/dt) of the coordinates."""
+        return (self.vectors @ z).real, (self.vectors @ (self.rates * z)).real
+
+    def of_state(self, q: Array, rates: Array) -> ComplexArray:
+        """State z of coordinates and their rates; of modes alone with the charges in equilibrium."""
+        if len(q) == self.modes < self.coordinates:
+            own = self.stiffness[self.modes :]
+            q = np.append(q, -np.linalg.pinv(own[:, self.modes :]) @ own[:, : self.modes] @ q)
+            rates = np.append(rates, np.zeros(len(q) - self.modes))
+        momenta = self.vectors.T @ (self.damping * q + self.inertia * rates)
+        return np.asarray(self.participations * (momenta + self.rates * (self.vectors.T @ (self.inertia * q))))
+
+    def energies(self, z: ComplexArray) -> tuple[float, float]:
+        """Kinetic energy with that of inductances, elastic energy with that of capacitances, J."""
+        x, rates = self.state(z)
+        return 0.5 * float(self.inertia @ rates**2), 0.5 * float(x @ self.stiffness @ x)
+
+    def accounts(self, forced: Forced) -> tuple[Array, Array]:
+        """Tables of the energy balance, see `integrator.add_powers`."""
+        drive = self.vectors @ forced.forward + self.vectors.conj() @ forced.backward
+        electrical = np.arange(self.coordinates) >= self.modes
+        rates = np.hstack([self.vectors.real, self.vectors.imag, interleaved(drive)])
+        return rates, np.array([self.forces.real, self.forces.imag, self.damping, electrical])
+
+
+def check_circuits(beam: Beam, circuits: Sequence[Mounted], omega: float) -> None:
+    """Raise InputError for circuits that have no equivalent in time."""
+    for one in circuits:
+        one.loads(beam)
+        load, where = one.load, f"circuits: actuator at position = {one.position!r} m"
+        if complex(one.actuator.port(omega).short_impedance):
+            raise InputError(f"{where}: in time its spring and mass are part of the beam, see beam_in_time")
+        if load is None:
+            raise InputError(f"{where} has no load, give one; voltages and currents alone are forces")
+        series = load.connection == "series" and (load.resistance or load.inductance)
+        if one.voltage is not None and load.capacitance and not series:
+            raise InputError(f"{where}: a source in time is behind a resistance or inductance, drop the capacitance")
+
+
+def rows_on(
+    basis: TimeBasis, forces: Sequence[PointLoad], damping: Ratio, circuits: Sequence[Mounted], omega: float
+) -> Rows:
+    """Rows of a basis under forces, coupled with circuits whose sources have angular frequency omega, rad/s.
+
+    Raises InputError for truncated modes, an unstable circuit and two equal rates, ResonanceError at an undamped one.
+    """
+    if not circuits:
+        return modal_rows(basis, forces, damping)
+    if basis.tail is not None:
+        raise InputError(f"model = {basis.model!r}: circuits act on truncated modes too, give 'fem' or 'segment'")
+    n, k = len(basis.omegas), len(circuits)
+    coupling, own, total = np.zeros((k, n)), np.zeros(k), np.zeros(k)
+    branches: list[tuple[int, float, float, float, complex]] = []  # circuit, R, L, 1/C_s, E
+    for i, one in enumerate(circuits):
+        port, load, source = one.actuator.port(omega), one.load, one.voltage or 0.0
+        assert load is not None
+        unit = sum((load.amplitude * basis.modal_load(load) for load in one.loads(basis.beam)), np.zeros(n))
+        coupling[i] = complex(port.force_factor).real * unit
+        own[i] = total[i] = (complex(port.blocked_admittance) / (1j * omega)).real
+        r, inductance, c = load.resistance or 0.0, load.inductance or 0.0, load.capacitance or 0.0
+        if c and (load.connection == "parallel" or not r + inductance):
+            total[i] += c
+            c = 0.0
+        split = [(r, inductance)] if load.connection == "series" else [(r, 0.0), (0.0, inductance)]
+        branches += [(i, *pair, 1.0 / c if c else 0.0, source) for pair in split if any(pair)]
+    of, r, inductance, soft, source = np.array(branches or np.zeros((0, 5))).T
+    charges = np.hstack([-coupling, (of.real == np.arange(k)[:, None]).astype(float)])  # on C, of all coordinates
+    m, inertia = n + len(of), np.append(np.ones(n), inductance.real)
+    lossy = np.append(2.0 * damping * basis.omegas, r.real)
+    stiffness = charges.T / total @ charges + np.diag(np.append(basis.omegas**2, soft.real))
+    heavy, light = np.flatnonzero(inertia), np.flatnonzero(inertia == 0.0)
+    a, at = np.zeros((m + len(heavy), m + len(heavy))), m + np.arange(len(heavy))
+    a[heavy, at], a[light, :m] = 1.0, -stiffness[light] / lossy[light, None]
+    a[m:, :m], a[at, at] = -stiffness[heavy] / inertia[heavy, None], -lossy[heavy] / inertia[heavy]
+    values, right = np.linalg.eig(a)
+    kept = values.imag >= 0.0
+    rates: ComplexArray = values[kept].astype(complex)
+    u: ComplexArray = right[:m, kept].astype(complex)
+    # vectors of the energy of unit modal mass, by which time steps are chosen
+    elastic = (u.conj() * (stiffness @ u)).real.sum(axis=0)
+    twice = inertia @ abs(u) ** 2 + np.divide(elastic, abs(rates) ** 2, out=0.0 * elastic, where=rates != 0.0)
+    u = u / np.sqrt(np.where(twice > 0.0, 0.5 * twice, 1.0))
+    order = np.lexsort((rates.imag, (abs(u[:n]) ** 2).sum(axis=0) < MECHANICAL))
+    rates, u = rates[order], u[:, order]
+    weights = 2.0 * np.outer(inertia, rates) + lossy[:, None]
+    form = (u**2 * weights).sum(axis=0)
+    if (total <= 0.0).any() or rates.real.max() > GROWTH * abs(rates).max():
+        raise InputError("circuits: a negative capacitance makes the beam unstable, give a smaller one")
+    if (abs(form) < DEFECTIVE * (abs(u) ** 2 * abs(weights)).sum(axis=0)).any():
+        raise InputError("circuits: two natural frequencies and dampings coincide, change a resistance by 1e-6")
+    applied = sum((phasor(f) * basis.modal_load(f) for f in forces), np.zeros(n, dtype=complex))
+    acting: ComplexArray = np.concatenate([applied, source]).astype(complex)
+    if acting.any() and abs(1j * omega - rates).min() < RESONANCE * omega:
+        raise ResonanceError("circuits: the drive is at an undamped resonance of beam and circuits, add a resistance")
+    volts = charges / total[:, None]
+    carried = own[:, None] * volts + np.pad(coupling, ((0, 0), (0, m - n)))
+    return CircuitRows(
+        rates=rates,
+        participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form,
+        loads=u.T @ acting,
+        backward_loads=u.conj().T @ acting,
+        readings=u.T @ np.vstack([volts, carried]).T,
+        vectors=u,
+        inertia=inertia,
+        damping=lossy,
+        stiffness=stiffness,
+        forces=acting,
+        modes=n,
+    )
