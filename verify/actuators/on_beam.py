@@ -222,53 +222,79 @@ class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
 
     beam: Beam
     loads: tuple[PointLoad, ...]
+    circuits: tuple[Mounted, ...] = ()
+    """Actuators with electrical loads, whose springs and masses are part of the beam."""
     error: float = 0.0
     """Relative error of an actuator's dynamic stiffness as a spring and a mass, its losses included."""
 
 
 def beam_in_time(
-    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float
+    beam: Beam,
+    kind: str,
+    forces: Sequence[PointForce],
+    actuator: Actuator | None,
+    frequency_hz: float,
+    shunts: Sequence[tuple[float, Load]] = (),
 ) -> BeamInTime:
-    """The beam and the loads that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
+    """The beam, loads and circuits that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
 
     Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
     of i omega Z_e in powers of omega^2; a current sees the stiffness of open electrodes. A patch is a part of the
-    section. Force factors are those of the steady state. Raises InputError for displacements, the current of a patch,
-    and an error of the reduction above `QUASI_STATIC`, losses of the actuator included.
+    section. Force factors and capacitances are those of the steady state. `shunts` are (position, m, load) of passive
+    actuators. Raises InputError for displacements, the current of a patch, and an error of the reduction above
+    `QUASI_STATIC`, losses of the actuator included.
     """
-    if kind == "force":
-        return BeamInTime(beam=beam, loads=tuple(forces))
-    if kind == "moment":
-        return BeamInTime(beam=beam, loads=tuple(PointMoment(**asdict(one)) for one in forces))
-    if actuator is None or (kind == "current" and isinstance(actuator, Patch)):
-        what = "displacements" if actuator is None else "currents of a patch"
+    if kind == "displacement" or (kind == "current" and isinstance(actuator, Patch)):
+        what = "displacements" if kind == "displacement" else "currents of a patch"
         raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
+    driven = tuple(forces) if kind in ("voltage", "current") else ()
+    loads: tuple[PointLoad, ...] = () if driven else tuple(forces)
+    if kind == "moment":
+        loads = tuple(PointMoment(**asdict(one)) for one in forces)
+    if actuator is None or not (driven or shunts):
+        return BeamInTime(beam=beam, loads=loads)
     omega = 2.0 * pi * frequency_hz
     if isinstance(actuator, Patch):
-        whole, patch = actuator.on(beam, [one.position for one in forces]), actuator.bonded(beam)
-        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in forces]
+        whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
+        patch = actuator.bonded(beam)
+        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in driven]
         volts = complex(patch.port(omega).force_factor).real
-        loads = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
-                 for one, force in zip(turning, forces, strict=True) for load in one.loads(whole)]  # fmt: skip
-        return BeamInTime(beam=whole, loads=tuple(loads))
+        pairs = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
+                 for one, force in zip(turning, driven, strict=True) for load in one.loads(whole)]  # fmt: skip
+        circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
+        return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
+    port, worst, whole = actuator.port(omega), 0.0, beam
+    for opened, places in ((kind == "current", [one.position for one in driven]), (False, [x for x, _ in shunts])):
+        if not places:
+            continue
+        stiffness, mass, error = _spring_and_mass(actuator, omega, opened)
+        if error > QUASI_STATIC or stiffness < 0.0 or mass < 0.0:
+            raise InputError(
+                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} "
+                f"(at most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
+            )
+        springs = (PointSpring(position=x, stiffness=stiffness) for x in dict.fromkeys(places))
+        masses = (PointMass(position=x, mass=mass) for x in dict.fromkeys(places))
+        worst, whole = max(worst, error), replace(whole, spring=(*whole.spring, *springs), mass=(*whole.mass, *masses))
+    factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
+    capacitance = (complex(port.blocked_admittance) / (1j * omega)).real
+    own = QuasiStatic(force_factor=complex(port.force_factor).real, capacitance=capacitance)
+    return BeamInTime(
+        beam=whole,
+        loads=(*loads, *(point_force(one.position, factor * phasor(one)) for one in driven)),
+        circuits=tuple(Mounted(actuator=own, position=x, load=load) for x, load in shunts),
+        error=worst,
+    )
+
+
+def _spring_and_mass(actuator: Actuator, omega: float, opened: bool) -> tuple[float, float, float]:
+    """(N/m, kg, relative error at omega) of an actuator with open or short-circuited electrodes."""
 
     def dynamic(at: Any) -> Any:
         port = actuator.port(at)
-        return 1j * at * (port.loaded_impedance() if kind == "current" else port.short_impedance)
+        return 1j * at * (port.loaded_impedance() if opened else port.short_impedance)
 
     low = omega * np.array([0.1, 0.2, 0.3])
     stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
-    exact, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
-    error = abs(exact - (stiffness + mass)) / abs(exact)
-    if error > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
-        raise InputError(
-            f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} (at "
-            f"most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
-        )
-    factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
-    places = dict.fromkeys(one.position for one in forces)
-    springs = (PointSpring(position=x, stiffness=stiffness) for x in places)
-    masses = (PointMass(position=x, mass=-mass / omega**2) for x in places)
-    whole = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, *masses))
-    loads = [point_force(one.position, factor * phasor(one)) for one in forces]
-    return BeamInTime(beam=whole, loads=tuple(loads), error=error)
+    exact = complex(dynamic(np.array([omega]))[0])
+    return stiffness, -mass / omega**2, abs(exact - (stiffness + mass)) / abs(exact)
