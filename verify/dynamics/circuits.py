@@ -29,6 +29,7 @@ DEFECTIVE = 1e-8
 """Bilinear over absolute form of a vector at which two rates coincide and the rows lose half of their digits."""
 GROWTH = 1e-9
 """Growth rate of an unstable row, relative to the largest rate."""
+UNSTABLE = "circuits: a negative capacitance makes the beam unstable, give a smaller one, or in series a larger one"
 
 
 class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
@@ -109,29 +110,8 @@ def rows_on(
     """
     if not circuits:
         return modal_rows(basis, forces, damping)
-    if basis.tail is not None:
-        raise InputError(f"model = {basis.model!r}: circuits act on truncated modes too, give 'fem' or 'segment'")
-    n, k = len(basis.omegas), len(circuits)
-    coupling, own, total = np.zeros((k, n)), np.zeros(k), np.zeros(k)
-    branches: list[tuple[int, float, float, float, complex]] = []  # circuit, R, L, 1/C_s, E
-    for i, one in enumerate(circuits):
-        port, load, source = one.actuator.port(omega), one.load, one.voltage or 0.0
-        assert load is not None
-        unit = sum((load.amplitude * basis.modal_load(load) for load in one.loads(basis.beam)), np.zeros(n))
-        coupling[i] = complex(port.force_factor).real * unit
-        own[i] = total[i] = (complex(port.blocked_admittance) / (1j * omega)).real
-        r, inductance, c = load.resistance or 0.0, load.inductance or 0.0, load.capacitance or 0.0
-        if c and (load.connection == "parallel" or not r + inductance):
-            total[i] += c
-            c = 0.0
-        split = [(r, inductance)] if load.connection == "series" else [(r, 0.0), (0.0, inductance)]
-        branches += [(i, *pair, 1.0 / c if c else 0.0, source) for pair in split if any(pair)]
-    of, r, inductance, soft, source = np.array(branches or np.zeros((0, 5))).T
-    charges = np.hstack([-coupling, (of.real == np.arange(k)[:, None]).astype(float)])  # on C, of all coordinates
-    m, inertia = n + len(of), np.append(np.ones(n), inductance.real)
-    lossy = np.append(2.0 * damping * basis.omegas, r.real)
-    stiffness = charges.T / total @ charges + np.diag(np.append(basis.omegas**2, soft.real))
-    heavy, light = np.flatnonzero(inertia), np.flatnonzero(inertia == 0.0)
+    n, (inertia, lossy, stiffness, source, outputs) = len(basis.omegas), _coupled(basis, damping, circuits, omega)
+    heavy, light, m = np.flatnonzero(inertia), np.flatnonzero(inertia == 0.0), len(inertia)
     a, at = np.zeros((m + len(heavy), m + len(heavy))), m + np.arange(len(heavy))
     a[heavy, at], a[light, :m] = 1.0, -stiffness[light] / lossy[light, None]
     a[m:, :m], a[at, at] = -stiffness[heavy] / inertia[heavy, None], -lossy[heavy] / inertia[heavy]
@@ -139,6 +119,8 @@ def rows_on(
     kept = values.imag >= 0.0
     rates: ComplexArray = values[kept].astype(complex)
     u: ComplexArray = right[:m, kept].astype(complex)
+    if rates.real.max() > GROWTH * abs(rates).max():
+        raise InputError(UNSTABLE)
     # vectors of the energy of unit modal mass, by which time steps are chosen
     elastic = (u.conj() * (stiffness @ u)).real.sum(axis=0)
     twice = inertia @ abs(u) ** 2 + np.divide(elastic, abs(rates) ** 2, out=0.0 * elastic, where=rates != 0.0)
@@ -147,22 +129,18 @@ def rows_on(
     rates, u = rates[order], u[:, order]
     weights = 2.0 * np.outer(inertia, rates) + lossy[:, None]
     form = (u**2 * weights).sum(axis=0)
-    if (total <= 0.0).any() or rates.real.max() > GROWTH * abs(rates).max():
-        raise InputError("circuits: a negative capacitance makes the beam unstable, give a smaller one")
     if (abs(form) < DEFECTIVE * (abs(u) ** 2 * abs(weights)).sum(axis=0)).any():
         raise InputError("circuits: two natural frequencies and dampings coincide, change a resistance by 1e-6")
     applied = sum((phasor(f) * basis.modal_load(f) for f in forces), np.zeros(n, dtype=complex))
     acting: ComplexArray = np.concatenate([applied, source]).astype(complex)
     if acting.any() and abs(1j * omega - rates).min() < RESONANCE * omega:
         raise ResonanceError("circuits: the drive is at an undamped resonance of beam and circuits, add a resistance")
-    volts = charges / total[:, None]
-    carried = own[:, None] * volts + np.pad(coupling, ((0, 0), (0, m - n)))
     return CircuitRows(
         rates=rates,
         participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form,
         loads=u.T @ acting,
         backward_loads=u.conj().T @ acting,
-        readings=u.T @ np.vstack([volts, carried]).T,
+        readings=u.T @ outputs.T,
         vectors=u,
         inertia=inertia,
         damping=lossy,
@@ -170,3 +148,35 @@ def rows_on(
         forces=acting,
         modes=n,
     )
+
+
+def _coupled(
+    basis: TimeBasis, damping: Ratio, circuits: Sequence[Mounted], omega: float
+) -> tuple[Array, Array, Array, ComplexArray, Array]:
+    """(M, D, K, sources of the branches, voltages and charges of the actuators as rows over the coordinates)."""
+    if basis.tail is not None:
+        raise InputError(f"model = {basis.model!r}: circuits act on truncated modes too, give 'fem' or 'segment'")
+    n, k = len(basis.omegas), len(circuits)
+    coupling, own, total = np.zeros((k, n)), np.zeros(k), np.zeros(k)
+    branches: list[tuple[int, float, float, float, complex]] = []  # circuit, R, L, 1/C_s, E
+    for i, one in enumerate(circuits):
+        port, load = one.actuator.port(omega), one.load
+        assert load is not None
+        unit = sum((part.amplitude * basis.modal_load(part) for part in one.loads(basis.beam)), np.zeros(n))
+        coupling[i] = complex(port.force_factor).real * unit
+        own[i] = total[i] = (complex(port.blocked_admittance) / (1j * omega)).real
+        r, inductance, c = load.resistance or 0.0, load.inductance or 0.0, load.capacitance or 0.0
+        if c and (load.connection == "parallel" or not r + inductance):
+            total[i] += c
+            c = 0.0
+        split = [(r, inductance)] if load.connection == "series" else [(r, 0.0), (0.0, inductance)]
+        branches += [(i, *pair, 1.0 / c if c else 0.0, one.voltage or 0.0) for pair in split if any(pair)]
+    if total.min() <= 0.0:
+        raise InputError(UNSTABLE)
+    of, r, inductance, soft, source = np.array(branches or np.zeros((0, 5)), dtype=complex).T
+    charges = np.hstack([-coupling, (of.real == np.arange(k)[:, None]).astype(float)])  # on the capacitances
+    volts = charges / total[:, None]
+    carried = own[:, None] * volts + np.pad(coupling, ((0, 0), (0, len(of))))
+    stiffness = charges.T @ volts + np.diag(np.append(basis.omegas**2, soft.real))
+    lossy = np.append(2.0 * damping * basis.omegas, r.real)
+    return np.append(np.ones(n), inductance.real), lossy, stiffness, source, np.vstack([volts, carried])
