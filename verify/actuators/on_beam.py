@@ -126,10 +126,8 @@ def on_beam(
 ) -> ActuatedBeam:
     """The steady field of a beam with actuators, under other harmonic loads and with passive devices.
 
-    `modal_damping` as in `BeamModel.harmonic`.
-
-    Raises InputError for an actuator off the beam, two at one place or an active device, and ResonanceError at an
-    undamped resonance of the beam without its actuators.
+    `modal_damping` as in `BeamModel.harmonic`. Raises InputError for an actuator off the beam, two at one place or an
+    active device, and ResonanceError at an undamped resonance of the beam without its actuators.
     """
     mounted, others = as_tuple("actuators", actuators, Mounted), loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)
@@ -229,13 +227,9 @@ class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def beam_in_time(
-    beam: Beam,
-    kind: str,
-    forces: Sequence[PointForce],
-    actuator: Actuator | None,
-    frequency_hz: float,
+    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float,
     shunts: Sequence[tuple[float, Load]] = (),
-) -> BeamInTime:
+) -> BeamInTime:  # fmt: skip
     """The beam, loads and circuits that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
 
     Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
@@ -248,53 +242,40 @@ def beam_in_time(
         what = "displacements" if kind == "displacement" else "currents of a patch"
         raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
     driven = tuple(forces) if kind in ("voltage", "current") else ()
-    loads: tuple[PointLoad, ...] = () if driven else tuple(forces)
-    if kind == "moment":
-        loads = tuple(PointMoment(**asdict(one)) for one in forces)
+    turning = (PointMoment(**asdict(one)) for one in forces)
+    loads: tuple[PointLoad, ...] = () if driven else tuple(turning if kind == "moment" else forces)
     if actuator is None or not (driven or shunts):
         return BeamInTime(beam=beam, loads=loads)
     omega = 2.0 * pi * frequency_hz
     if isinstance(actuator, Patch):
         whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
         patch = actuator.bonded(beam)
-        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in driven]
         volts = complex(patch.port(omega).force_factor).real
-        pairs = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
-                 for one, force in zip(turning, driven, strict=True) for load in one.loads(whole)]  # fmt: skip
+        pairs = [replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
+                 for one in driven
+                 for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)]  # fmt: skip
         circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
         return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
-    port, worst, whole = actuator.port(omega), 0.0, beam
-    for opened, places in ((kind == "current", [one.position for one in driven]), (False, [x for x, _ in shunts])):
-        if not places:
-            continue
-        stiffness, mass, error = _spring_and_mass(actuator, omega, opened)
-        if error > QUASI_STATIC or stiffness < 0.0 or mass < 0.0:
+    port, worst, low = actuator.port(omega), 0.0, np.array([0.1, 0.2, 0.3, 1.0])
+    places = [(one.position, kind == "current") for one in driven] + [(x, False) for x, _ in shunts]
+    for x, opened in dict.fromkeys(places):
+        ports = actuator.port(omega * low)
+        dynamic = 1j * omega * low * (ports.loaded_impedance() if opened else ports.short_impedance)
+        stiffness, mass, _ = np.linalg.solve(np.vander(low[:3] ** 2, increasing=True), dynamic[:3].real).tolist()
+        worst = float(abs(dynamic[3] - (stiffness + mass)) / abs(dynamic[3]))
+        if worst > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
             raise InputError(
-                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} "
+                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {worst:.2g} "
                 f"(at most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
             )
-        springs = (PointSpring(position=x, stiffness=stiffness) for x in dict.fromkeys(places))
-        masses = (PointMass(position=x, mass=mass) for x in dict.fromkeys(places))
-        worst, whole = max(worst, error), replace(whole, spring=(*whole.spring, *springs), mass=(*whole.mass, *masses))
+        springs = *beam.spring, PointSpring(position=x, stiffness=stiffness)
+        beam = replace(beam, spring=springs, mass=(*beam.mass, PointMass(position=x, mass=-mass / omega**2)))
     factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
     capacitance = (complex(port.blocked_admittance) / (1j * omega)).real
     own = QuasiStatic(force_factor=complex(port.force_factor).real, capacitance=capacitance)
     return BeamInTime(
-        beam=whole,
+        beam=beam,
         loads=(*loads, *(point_force(one.position, factor * phasor(one)) for one in driven)),
         circuits=tuple(Mounted(actuator=own, position=x, load=load) for x, load in shunts),
         error=worst,
     )
-
-
-def _spring_and_mass(actuator: Actuator, omega: float, opened: bool) -> tuple[float, float, float]:
-    """(N/m, kg, relative error at omega) of an actuator with open or short-circuited electrodes."""
-
-    def dynamic(at: Any) -> Any:
-        port = actuator.port(at)
-        return 1j * at * (port.loaded_impedance() if opened else port.short_impedance)
-
-    low = omega * np.array([0.1, 0.2, 0.3])
-    stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
-    exact = complex(dynamic(np.array([omega]))[0])
-    return stiffness, -mass / omega**2, abs(exact - (stiffness + mass)) / abs(exact)

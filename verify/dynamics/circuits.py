@@ -23,21 +23,15 @@ from verify.linear.field import phasor
 from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import Beam, PointLoad
 
-MECHANICAL = 0.25
-"""Share of the energy in the modes below which a row is that of a circuit."""
-DEFECTIVE = 1e-8
-"""Bilinear over absolute form of a vector at which two rates coincide and the rows lose half of their digits."""
-GROWTH = 1e-9
-"""Growth rate of an unstable row, relative to the largest rate."""
 UNSTABLE = "circuits: a negative capacitance makes the beam unstable, give a smaller one, or in series a larger one"
 
 
 class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
-    """Rows of beam and circuits with complex psi; coordinates are modal amplitudes (sqrt(kg) m) and charges (C)."""
+    """Rows of beam and circuits with complex psi; coordinates are modal amplitudes (sqrt(kg) m) and charges (C).
 
-    backward_loads: ComplexArray
-    readings: ComplexArray
-    """Voltages and charges of all actuators, (n, 2 circuits)."""
+    Readings are the voltages and charges of all actuators.
+    """
+
     vectors: ComplexArray
     """u, (coordinates, n)."""
     inertia: Array
@@ -52,9 +46,9 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
     """Number of modal amplitudes, the first coordinates."""
 
     @property
-    def coordinates(self) -> int:
-        """Number of coordinates of the state."""
-        return len(self.inertia)
+    def sizes(self) -> tuple[int, ...]:
+        """Numbers of coordinates of which a state may be made: without charges they are in equilibrium."""
+        return self.modes, len(self.inertia)
 
     def shapes(self, basis: TimeBasis) -> Callable[[Array, int], ComplexArray]:
         """(x, derivative) -> psi, (n, len(x)), on a basis."""
@@ -66,8 +60,8 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
         return (self.vectors @ z).real, (self.vectors @ (self.rates * z)).real
 
     def of_state(self, q: Array, rates: Array) -> ComplexArray:
-        """State z of coordinates and their rates; of modes alone with the charges in equilibrium."""
-        if len(q) == self.modes < self.coordinates:
+        """State z of coordinates and their rates, or of modes alone."""
+        if len(q) < len(self.inertia):
             own = self.stiffness[self.modes :]
             q = np.append(q, -np.linalg.pinv(own[:, self.modes :]) @ own[:, : self.modes] @ q)
             rates = np.append(rates, np.zeros(len(q) - self.modes))
@@ -82,7 +76,7 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
     def accounts(self, forced: Forced) -> tuple[Array, Array]:
         """Tables of the energy balance, see `integrator.add_powers`."""
         drive = self.vectors @ forced.forward + self.vectors.conj() @ forced.backward
-        electrical = np.arange(self.coordinates) >= self.modes
+        electrical = np.arange(len(self.inertia)) >= self.modes
         rates = np.hstack([self.vectors.real, self.vectors.imag, interleaved(drive)])
         return rates, np.array([self.forces.real, self.forces.imag, self.damping, electrical])
 
@@ -116,20 +110,17 @@ def rows_on(
     a[heavy, at], a[light, :m] = 1.0, -stiffness[light] / lossy[light, None]
     a[m:, :m], a[at, at] = -stiffness[heavy] / inertia[heavy, None], -lossy[heavy] / inertia[heavy]
     values, right = np.linalg.eig(a)
-    kept = values.imag >= 0.0
-    rates: ComplexArray = values[kept].astype(complex)
-    u: ComplexArray = right[:m, kept].astype(complex)
-    if rates.real.max() > GROWTH * abs(rates).max():
+    order = np.argsort(np.where(values.imag > 0.0, values.imag, np.inf), kind="stable")
+    order = order[values[order].imag >= 0.0]  # one of a pair by frequency, then real rates
+    rates: ComplexArray = values[order].astype(complex)
+    u: ComplexArray = right[:m, order].astype(complex)
+    if rates.real.max() > 1e-9 * abs(rates).max():
         raise InputError(UNSTABLE)
-    # vectors of the energy of unit modal mass, by which time steps are chosen
-    elastic = (u.conj() * (stiffness @ u)).real.sum(axis=0)
-    twice = inertia @ abs(u) ** 2 + np.divide(elastic, abs(rates) ** 2, out=0.0 * elastic, where=rates != 0.0)
-    u = u / np.sqrt(np.where(twice > 0.0, 0.5 * twice, 1.0))
-    order = np.lexsort((rates.imag, (abs(u[:n]) ** 2).sum(axis=0) < MECHANICAL))
-    rates, u = rates[order], u[:, order]
+    size = np.linalg.norm(u[:n], axis=0)  # z is a modal amplitude, by which time steps are chosen
+    u = u / np.where(size > 0.0, size, 1.0)
     weights = 2.0 * np.outer(inertia, rates) + lossy[:, None]
     form = (u**2 * weights).sum(axis=0)
-    if (abs(form) < DEFECTIVE * (abs(u) ** 2 * abs(weights)).sum(axis=0)).any():
+    if (abs(form) < 1e-8 * (abs(u) ** 2 * abs(weights)).sum(axis=0)).any():  # half of the digits are lost
         raise InputError("circuits: two natural frequencies and dampings coincide, change a resistance by 1e-6")
     applied = sum((phasor(f) * basis.modal_load(f) for f in forces), np.zeros(n, dtype=complex))
     acting: ComplexArray = np.concatenate([applied, source]).astype(complex)

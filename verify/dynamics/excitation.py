@@ -34,25 +34,15 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     loads: ComplexArray
     """psi at the forces times their phasors, (n,), N/sqrt(kg)."""
 
-    @property
-    def backward_loads(self) -> ComplexArray:
-        """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg)."""
-        return self.loads
+    backward_loads: ComplexArray | None = None
+    """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg); None for real psi."""
+    readings: ComplexArray = np.empty((0, 0), dtype=complex)
+    """psi of outputs other than the deflection, (n, outputs)."""
 
     @property
-    def coordinates(self) -> int:
-        """Number of coordinates of the state."""
-        return len(self.rates)
-
-    @property
-    def modes(self) -> int:
-        """Number of modal amplitudes, the first coordinates."""
-        return len(self.rates)
-
-    @property
-    def readings(self) -> ComplexArray:
-        """Shapes psi of outputs other than the deflection, (n, outputs)."""
-        return np.empty((len(self.rates), 0), dtype=complex)
+    def sizes(self) -> tuple[int, ...]:
+        """Numbers of coordinates of which a state may be made."""
+        return (len(self.rates),)
 
     def shapes(self, basis: TimeBasis) -> Callable[[Array, int], Any]:
         """(x, derivative) -> psi, (n, len(x)), of rows on a basis."""
@@ -131,11 +121,9 @@ def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, or
     Half of the force drives e^{i omega t}, half e^{-i omega t}; each amplitude follows from the highest power down,
     (i omega - lambda) A_d + (d + 1)/T A_{d+1} = c F envelope_d / 2, exact for any polynomial.
     """
-    halves = (
-        (rows.rates, rows.participations * rows.loads),
-        (rows.rates.conj(), rows.participations.conj() * rows.backward_loads),
-    )
-    parts = [_amplitudes(1j * omega - rate, 0.5 * load[:, None] * envelope, unit_s) for rate, load in halves]
+    back = rows.loads if rows.backward_loads is None else rows.backward_loads
+    pairs = ((rows.rates, rows.participations, rows.loads), (rows.rates.conj(), rows.participations.conj(), back))
+    parts = [_amplitudes(1j * omega - rate, 0.5 * np.outer(c * load, envelope), unit_s) for rate, c, load in pairs]
     width = max(part.shape[1] for part in parts)
     forward, backward = (np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
     return Forced(forward=forward, backward=backward, omega=omega, origin=origin, unit_s=unit_s)

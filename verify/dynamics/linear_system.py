@@ -99,7 +99,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Columns of the deflection at x and of the readings, (columns, len(x) + readings)."""
         if not self.readings.size:
             return self.columns(x)
-        return np.hstack([self.columns(x), self._columns(self.rows.readings, self.readings)])
+        psi = self.rows.readings.reshape(len(self.rows.rates), self.readings.shape[1])
+        return np.hstack([self.columns(x), self._columns(psi, self.readings)])
 
     def _columns(self, psi: Any, drive: ComplexArray) -> Array:
         imaginary = psi[len(psi) - self.complex_rows :].imag
@@ -201,7 +202,7 @@ def stages_from_rest(
                 rows=rows, forced=forced, shapes=rows.shapes(basis), field=field,
                 edges=_to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=omega, origin=origin,
                 unit_s=unit, envelope=envelope, steps=piece.steps, complex_rows=len(rows.rates) * bool(circuits),
-                readings=forced.drive_shapes(rows.readings),
+                readings=forced.drive_shapes(rows.readings) if circuits else NO_READINGS,
             )
         )  # fmt: skip
         origin += unit
@@ -232,16 +233,15 @@ def steady_stage(
         higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
         return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
 
-    edges = _to_the_end(edges, harmonic.beam)
-    stage = Stage(field=field, edges=edges, degree=degree, omega=harmonic.omega, origin=origin, steps=steps)
+    steady = [one.voltage for one in state.actuators] + [one.current / (1j * harmonic.omega) for one in state.actuators]
+    stage = Stage(
+        field=field, edges=_to_the_end(edges, beam), degree=degree, omega=harmonic.omega, origin=origin, steps=steps,
+        readings=np.array([steady], dtype=complex),
+    )  # fmt: skip
     if basis is None:
         return stage
     rows = rows_on(basis, (), damping, circuits, harmonic.omega)
-    steady = [one.voltage for one in state.actuators] + [one.current / (1j * harmonic.omega) for one in state.actuators]
-    return replace(
-        stage, rows=rows, shapes=rows.shapes(basis), complex_rows=len(rows.rates) * bool(circuits),
-        readings=np.array([steady], dtype=complex),
-    )  # fmt: skip
+    return replace(stage, rows=rows, shapes=rows.shapes(basis), complex_rows=len(rows.rates) * bool(circuits))
 
 
 def _to_the_end(edges: Array, beam: Beam) -> Array:

@@ -116,10 +116,10 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def continued(self, stage: Stage) -> Any:
         """Total state z at the end of the earlier run. Raises InputError for other modes."""
-        before, n = self.before, stage.rows.coordinates
+        before, sizes = self.before, stage.rows.sizes
         assert before is not None
-        if len(before.q) not in (n, stage.rows.modes):
-            raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
+        if (n := len(before.q)) not in sizes:
+            raise InputError(f"continue_from has {n} modes and this run {sizes[0]}: give both the same modes")
         return stage.rows.of_state(before.q, before.rates)
 
 

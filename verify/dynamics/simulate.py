@@ -119,10 +119,10 @@ def simulate(
         steps_per_period=steps_per_period, continue_from=continue_from, circuits=circuits,
     )  # fmt: skip
     basis = None
-    if request.start == "rest" or request.two_way or request.circuits:
+    if request.start == "rest" or request.two_way:
         line = request.sliders[0].line if request.sliders else "spline"
-        moments = [load for one in request.circuits for load in one.loads(beam)]
-        basis = basis_of(beam, model, count, request.modes, line, [*request.forces, *moments])
+        ports = [load for one in request.circuits for load in one.loads(beam)]
+        basis = basis_of(beam, model, count, request.modes, line, [*request.forces, *ports])
     stages = _stages(request, basis)
     if not request.sliders:
         motion = _closed_form(request, stages, request.notes(basis))
