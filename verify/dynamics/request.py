@@ -127,7 +127,7 @@ def request_of(
     beam: Beam, forces: Any, frequency_hz: float, duration: float, *, model: str, count: int | None, modes: int | None,
     start: str | None, soft_start_periods: float, envelope: Envelope, modal_damping: float | None, slider: Any,
     prescribed_speed: Any, fixed_position: Any, at: Any, samples: int, step: float | None,
-    steps_per_period: int | None, continue_from: Any, circuits: Any,
+    steps_per_period: int | None, continue_from: Any, circuits: Any = (),
 ) -> Request:  # fmt: skip
     """A validated request; arguments as in `simulate`. Raises InputError."""
     check_frequency("frequency_hz", frequency_hz, beam)
