@@ -27,10 +27,7 @@ UNSTABLE = "circuits: a negative capacitance makes the beam unstable, give a sma
 
 
 class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
-    """Rows of beam and circuits with complex psi; coordinates are modal amplitudes (sqrt(kg) m) and charges (C).
-
-    Readings are the voltages and charges of all actuators.
-    """
+    """Rows of modal amplitudes (sqrt(kg) m) and charges (C); readings: voltages and charges of all actuators."""
 
     vectors: ComplexArray
     """u, (coordinates, n)."""
@@ -47,7 +44,7 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Numbers of coordinates of which a state may be made: without charges they are in equilibrium."""
+        """Admissible numbers of coordinates in `of_state`; left out, charges are in equilibrium."""
         return self.modes, len(self.inertia)
 
     def shapes(self, basis: TimeBasis) -> Callable[[Array, int], ComplexArray]:
@@ -76,9 +73,8 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
     def accounts(self, forced: Forced) -> tuple[Array, Array]:
         """Tables of the energy balance, see `integrator.add_powers`."""
         drive = self.vectors @ forced.forward + self.vectors.conj() @ forced.backward
-        electrical = np.arange(len(self.inertia)) >= self.modes
-        rates = np.hstack([self.vectors.real, self.vectors.imag, interleaved(drive)])
-        return rates, np.array([self.forces.real, self.forces.imag, self.damping, electrical])
+        table = [self.forces.real, self.forces.imag, self.damping, np.arange(len(drive)) >= self.modes]
+        return np.hstack([self.vectors.real, self.vectors.imag, interleaved(drive)]), np.array(table)
 
 
 def check_circuits(beam: Beam, circuits: Sequence[Mounted], omega: float) -> None:
@@ -127,18 +123,10 @@ def rows_on(
     if acting.any() and abs(1j * omega - rates).min() < RESONANCE * omega:
         raise ResonanceError("circuits: the drive is at an undamped resonance of beam and circuits, add a resistance")
     return CircuitRows(
-        rates=rates,
-        participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form,
-        loads=u.T @ acting,
-        backward_loads=u.conj().T @ acting,
-        readings=u.T @ outputs.T,
-        vectors=u,
-        inertia=inertia,
-        damping=lossy,
-        stiffness=stiffness,
-        forces=acting,
-        modes=n,
-    )
+        rates=rates, participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form, loads=u.T @ acting,
+        backward_loads=u.conj().T @ acting, readings=u.T @ outputs.T, vectors=u, inertia=inertia, damping=lossy,
+        stiffness=stiffness, forces=acting, modes=n,
+    )  # fmt: skip
 
 
 def _coupled(

@@ -41,7 +41,7 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """Numbers of coordinates of which a state may be made."""
+        """Admissible numbers of coordinates in `of_state`."""
         return (len(self.rates),)
 
     def shapes(self, basis: TimeBasis) -> Callable[[Array, int], Any]:
