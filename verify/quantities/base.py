@@ -114,7 +114,8 @@ class Quantity:
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
         bound = self.bind(arguments)
-        if not self.devices and "beam" in self.reads and (also := scene.beside):
+        accepts = [name for one in self._groups.values() for name in getattr(one, "accepts", ())]
+        if not self.devices and "beam" in self.reads and (also := scene.beside) and also not in accepts:
             at = scene.devices[0].position if scene.devices else scene.shunts[0][0]
             raise InputError(
                 f"quantity = {self.name!r} does not model {also}, and the scene has one at {at:g} m: leave {also} out, "
