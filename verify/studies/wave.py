@@ -101,6 +101,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
         columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
         columns += [si("crest speed there", "m/s", "+.5g")]
+        columns = columns if any(row["best"] for row in rows) else columns[:5]
         notes = [
             "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
             "of the surface at the rms amplitude, against the wave. Right: at its own frequency of least reflection.",
@@ -108,6 +109,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"wave towards {end[against.waves.direction]}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
+        cells = [row[: len(columns)] for row in cells]
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
         swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
