@@ -125,8 +125,8 @@ def on_beam(
 
 
 def responder(
-    model: BeamModel, mounted: tuple[Mounted, ...], frequency_hz: float, *, forces: Loads = (), devices: Devices = ()
-) -> Callable[[tuple[Mounted, ...]], ActuatedBeam]:
+    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = ()
+) -> Callable[[Sequence[Mounted]], ActuatedBeam]:
     """The steady field by the electrical conditions of the actuators, which leave the unit fields as they are."""
     others = loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)
@@ -159,7 +159,7 @@ def responder(
     p, ports = len(loads), [one.actuator.port(omega) for one in mounted]
     free = moved[:, p] if rest else np.zeros(p)
 
-    def respond(mounted: tuple[Mounted, ...]) -> ActuatedBeam:
+    def respond(mounted: Sequence[Mounted]) -> ActuatedBeam:
         blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
         applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
         velocity = free + moved[:, :p] @ applied

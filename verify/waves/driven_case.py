@@ -8,11 +8,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-<<<<<<< HEAD
-from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam, responder
-=======
-from verify.actuators.on_beam import ActuatedBeam, Mounted, as_moments, on_beam
->>>>>>> w/b1
+from verify.actuators.on_beam import ActuatedBeam, Mounted, as_moments, on_beam, responder
 from verify.actuators.port import Actuator
 from verify.actuators.shunt import Load
 from verify.arrays import Array, ComplexArray
@@ -108,14 +104,14 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
             yield from (self.field(forces, frequency_hz) for forces in drives)
             return
         self.model.check_propagates(frequency_hz)
-        mounted = [(*self._driven(forces), *self._shunted) for forces in drives]
+        mounted = [self._mounted(forces) for forces in drives]
         respond = responder(self.model, mounted[0], frequency_hz, devices=self.passive)
         yield from (respond(one).field for one in mounted)
 
     @property
     def cut(self) -> "DrivenCase":
         """The case with its model cut at actuators and moments, whose system then serves all frequencies."""
-        ports = [load.position for one in (*self._driven(self.acting), *self._shunted) for load in one.loads(self.beam)]
+        ports = [load.position for one in self._mounted(self.acting) for load in one.loads(self.beam)]
         return replace(self, model=self.model.cut_at([*ports, *self.places[1]]))
 
     def _loads(self, forces: Sequence[PointForce]) -> tuple[PointLoad, ...]:
