@@ -75,7 +75,7 @@ class _Sketch:
         for x, load in scene.shunts:
             parts = (("resistance", "Ω"), ("inductance", "H"), ("capacitance", "F"))
             words = [f"{value:.4g} {u}" for name, u in parts if (value := getattr(load, name)) is not None]
-            self.actuator(scene.drive.actuator, x, self.half(x), ["shunt", *words], SPRING)
+            self.actuator(scene.drive.actuator, x, self.half(x), [f"shunt, x = {_length(x)}", *words], SPRING)
         kind = scene.drive.kind if scene.drive is not None else "force"
         for force in scene.forces:
             phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
