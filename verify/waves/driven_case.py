@@ -108,12 +108,6 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         respond = responder(self.model, mounted[0], frequency_hz, devices=self.passive)
         yield from (respond(one).field for one in mounted)
 
-    @property
-    def cut(self) -> "DrivenCase":
-        """The case with its model cut at actuators and moments, whose system then serves all frequencies."""
-        ports = [load.position for one in self._mounted(self.acting) for load in one.loads(self.beam)]
-        return replace(self, model=self.model.cut_at([*ports, *self.places[1]]))
-
     def _loads(self, forces: Sequence[PointForce]) -> tuple[PointLoad, ...]:
         """The forces or moments of a drive without actuators."""
         return {"force": tuple(forces), "moment": as_moments(forces)}.get(self.kind, ())
@@ -212,7 +206,10 @@ def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[flo
     """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with all others zero; NaN at resonances."""
     if case.kind == "force" and not case.passive and not case.shunts:
         return case.model.receptance(positions, frequencies_hz, x)
-    found, case = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex), case.cut
+    found = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    # cut here, one system serves all frequencies
+    ports = [load.position for one in case._mounted(case.acting) for load in one.loads(case.beam)]
+    case = replace(case, model=case.model.cut_at([*ports, *case.places[1]]))
     for i, hertz in enumerate(frequencies_hz.tolist()):
         with suppress(NoFigureError):
             for j, field in enumerate(case.units(hertz)):
