@@ -101,10 +101,12 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
         columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
         columns += [si("crest speed there", "m/s", "+.5g")]
-        columns = columns if any(row["best"] for row in rows) else columns[:5]
+        columns = columns if (better := any(row["best"] for row in rows)) else columns[:5]
         notes = [
             "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
-            "of the surface at the rms amplitude, against the wave. Right: at its own frequency of least reflection.",
+            "of the surface at the rms amplitude, against the wave."
+            + " Right: at its own frequency of least reflection."
+            * better,
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
             f"wave towards {end[against.waves.direction]}.",
         ]
