@@ -12,7 +12,7 @@ hence (1 + Z_e M) F = F0 - Z_e v0. A very stiff actuator imposes the displacemen
 terms, loses as many digits as Z_e M has.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import pi
 from typing import Any
 
@@ -130,7 +130,15 @@ def on_beam(
     `modal_damping` as in `BeamModel.harmonic`. Raises InputError for an actuator off the beam, two at one place or an
     active device, and ResonanceError at an undamped resonance of the beam without its actuators.
     """
-    mounted, others = as_tuple("actuators", actuators, Mounted), loads_on(model.beam, forces, PointLoad)
+    mounted = as_tuple("actuators", actuators, Mounted)
+    return responder(model, mounted, frequency_hz, forces=forces, devices=devices)(mounted)
+
+
+def responder(
+    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = ()
+) -> Callable[[Sequence[Mounted]], ActuatedBeam]:
+    """The steady field by the electrical conditions of the actuators, which leave the unit fields as they are."""
+    others = loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)
     if any(device.amplitude for device in passive):
         raise InputError("devices: a device beside actuators has no force of its own, give a PointForce")
@@ -160,22 +168,26 @@ def on_beam(
     moved = moved * 1j * omega
     p, ports = len(loads), [one.actuator.port(omega) for one in mounted]
     free = moved[:, p] if rest else np.zeros(p)
-    blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
-    applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
-    velocity = free + moved[:, :p] @ applied
-    parts = [*zip(applied.tolist(), units, strict=True), *((1.0, one) for one in rest)]
-    whole, sums = combined(parts), dict[float, complex]()
-    for weight, one in parts:
-        for force in one.forces:
-            sums[force.position] = sums.get(force.position, 0.0) + weight * phasor(force)
-    whole = replace(
-        whole,
-        beam=model.beam,
-        forces=tuple(point_force(at, value) for at, value in sums.items()),
-        couples=tuple(sorted({at for _, one in parts for at in one.couples})),
-    )
-    states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
-    return ActuatedBeam(field=whole, actuators=tuple(states))
+
+    def respond(mounted: Sequence[Mounted]) -> ActuatedBeam:
+        blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
+        applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
+        velocity = free + moved[:, :p] @ applied
+        parts = [*zip(applied.tolist(), units, strict=True), *((1.0, one) for one in rest)]
+        whole, sums = combined(parts), dict[float, complex]()
+        for weight, one in parts:
+            for force in one.forces:
+                sums[force.position] = sums.get(force.position, 0.0) + weight * phasor(force)
+        whole = replace(
+            whole,
+            beam=model.beam,
+            forces=tuple(point_force(at, value) for at, value in sums.items()),
+            couples=tuple(sorted({at for _, one in parts for at in one.couples})),
+        )
+        states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
+        return ActuatedBeam(field=whole, actuators=tuple(states))
+
+    return respond
 
 
 def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:

@@ -41,6 +41,10 @@ TABLES = ("beam", "drive", "slider", "motion")  # tables of a scene that a quant
 ROUNDING = 1e-12  # tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)
 
 
+UNITS = {"resistance": "ohm", "inductance": "H", "capacitance": "F", "peak": "1", "loss_factor": "1"}
+"""Unit of a quantity with several figures by the argument that names the figure."""
+
+
 class Quantity:
     """A named quantity of interest. `@quantity` makes and registers it."""
 
@@ -110,6 +114,12 @@ class Quantity:
             for parameter, kind in self._groups.items()
         }
         return values | groups
+
+    def unit_of(self, arguments: Mapping[str, Any]) -> str:
+        """Its unit; where that depends on an argument as resistance or inductance, the unit for these arguments."""
+        values = {one.name: one.default for one in msgspec.structs.fields(self.schema)} | dict(arguments)
+        units = [UNITS[value] for value in values.values() if isinstance(value, str) and value in UNITS]
+        return units[0] if units and " or " in self.unit else self.unit
 
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""

@@ -20,21 +20,29 @@ if TYPE_CHECKING:
 Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.force, then in drive.shunt, from 1")]
 
 
-def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
+def _port(scene: Scene, frequency_hz: float | None, patch: bool = False) -> "tuple[Port, float]":
     """(port of the scene's actuator, rad/s)."""
     from verify.actuators.patch import Patch
 
     actuator = scene.drive.actuator if scene.drive else None
     if actuator is None:
         raise InputError("drive.actuator is missing: give the design of an actuator, its kind and sizes")
+    if isinstance(actuator, Patch) != patch:
+        raise InputError("drive.actuator: a patch has drive.moment_per_volt, all others have drive.force_per_volt")
     omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
     return (actuator.bonded(scene.beam) if isinstance(actuator, Patch) else actuator).port(omega), omega
 
 
 @quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
 def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
-    """Magnitude of the blocked force of an actuator per volt; of a patch, N m/V."""
+    """Magnitude of the blocked force of an actuator per volt."""
     return abs(complex(_port(scene, frequency_hz)[0].force_factor))
+
+
+@quantity("drive.moment_per_volt", unit="N m/V", reads=DRIVEN, devices=True)
+def moment_per_volt(scene: Scene) -> float:
+    """Magnitude of the bending moment of a patch per volt."""
+    return abs(complex(_port(scene, None, patch=True)[0].force_factor))
 
 
 @quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)
