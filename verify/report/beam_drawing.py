@@ -3,6 +3,8 @@
 Lengths along the beam are to scale. Heights are not; sections keep their order of thickness.
 """
 
+from itertools import pairwise
+from math import nan
 from typing import Any
 
 from verify.formatting import with_unit
@@ -17,15 +19,27 @@ THINNEST, THICKEST = 0.10, 0.34
 """Drawn thickness of sections, inches."""
 LETTER, ROW = 0.078, 0.17
 """Width of a character and height of a row of text, inches."""
-DEVICE_UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotational_dashpot": "N m s"}
-DEVICE_UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "amplitude": "N"}
+UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotational_dashpot": "N m s", "amplitude": "N"}
+UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "resistance": "Ω", "inductance": "H", "capacitance": "F"}
+UP = (nan, nan)  # lifts the pen
+WALL = [(0.0, -0.37), (0.0, 0.37), *(p for i in range(6) for p in (UP, (0.0, 0.12 * i - 0.29), (0.1, 0.12 * i - 0.37)))]
+SYMBOLS = {
+    "clamped": WALL,
+    "guided": [(0.03, 0.1), (0.09, 0.1), UP, (0.03, -0.1), (0.09, -0.1), UP, *((x + 0.12, y) for x, y in WALL)],
+    "pinned": [(0.0, 0.0), (-0.13, -0.2), (0.13, -0.2), (0.0, 0.0), UP, (-0.2, -0.22), (0.2, -0.22)],
+    "spring": [(0.0, 0.0), (0.0, -0.06), *((0.07 * (-1) ** (i + 1), -0.1 - 0.045 * i) for i in range(6)),
+               (0.0, -0.37), (0.0, -0.42), UP, (-0.14, -0.42), (0.14, -0.42)],
+    "dashpot": [(0.0, 0.0), (0.0, 0.24), UP, (-0.06, 0.24), (0.06, 0.24), UP, (-0.1, 0.14), (-0.1, 0.34), (0.1, 0.34),
+                (0.1, 0.14), UP, (0.0, 0.34), (0.0, 0.5), UP, (-0.15, 0.5), (0.15, 0.5)],
+}  # fmt: skip
+"""Polylines from a point of the beam, inches; supports are those of the right end."""
 
 
 def beam_figure(scene: Any) -> Figure:
-    """The drawing as a figure; `scene` needs `beam`, `drive`, `forces`, `devices` and `slider`."""
+    """The drawing as a figure; `scene` needs `beam`, `drive`, `forces`, `devices`, `shunts` and `slider`."""
     from matplotlib.figure import Figure as MatplotlibFigure
 
-    sketch = _Sketch(scene, MatplotlibFigure().subplots())
+    bottom, top = _Sketch(scene, MatplotlibFigure().subplots()).extent
     beam = scene.beam
     counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, "forces": scene.forces}
     counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
@@ -34,8 +48,8 @@ def beam_figure(scene: Any) -> Figure:
         id="beam",
         title="The beam",
         caption=f"{_length(beam.length)} long, {beam.supports[0]} at the left, {beam.supports[1]} at the right{there}.",
-        draw=lambda ax: _Sketch(scene, ax).frame(),
-        size=(WIDTH, sketch.top - sketch.bottom),
+        draw=lambda ax: _Sketch(scene, ax),
+        size=(WIDTH, top - bottom),
     )
 
 
@@ -43,82 +57,99 @@ def _length(x: float) -> str:
     return with_unit(x, form=".4g")
 
 
+def _values(one: Any) -> list[str]:
+    values = ((getattr(one, name, None), unit) for name, unit in UNITS.items())
+    return [f"{value:.4g} {unit}" for value, unit in values if value]
+
+
 class _Sketch:
-    """Draws everything on axes whose unit is an inch; keeps the extent and the places taken by text."""
+    """Draws everything on axes whose unit is an inch; keeps the places of texts and the heights of bodies."""
 
     def __init__(self, scene: Any, ax: Any) -> None:
-        self.ax, self.beam = ax, scene.beam
-        self.top, self.bottom = 0.4, -0.4
+        self.ax, self.beam, beam = ax, scene.beam, scene.beam
         self.taken: list[tuple[float, float, float, float]] = []
-        sizes = [(piece.bending_stiffness / piece.mass_per_length) ** 0.5 for piece in self.beam.pieces]
-        spread = max(sizes) - min(sizes)
+        self.bodies: list[tuple[float, float]] = []
+        sizes = [(piece.bending_stiffness / piece.mass_per_length) ** 0.5 for piece in beam.pieces]
+        spread, ends = max(sizes) - min(sizes), [0.0]
         growth = [(size - min(sizes)) / spread if spread else 0.25 for size in sizes]
         self.heights = [THINNEST + (THICKEST - THINNEST) * share for share in growth]
-        self.sections()
+        for piece, height in zip(beam.pieces, self.heights, strict=True):
+            ends.append(ends[-1] + piece.length)
+            self.box(self.at(ends[-2]), -0.5 * height, self.at(piece.length) - EDGE, height, BODY, alpha=0.45)
+        self.ends = ends
+        self.loads()
         self.attached()
-        for x, support, out in ((0.0, self.beam.supports[0], -1), (self.beam.length, self.beam.supports[1], 1)):
-            self.support(self.at(x), self.half(x), support, out)
-        self.slider(scene.slider)
-        if len(self.beam.pieces) == 1:
-            size = f"EI = {self.beam.bending_stiffness:.4g} N m²"
-            if self.beam.thickness is not None and self.beam.width is not None:
-                size = f"{_length(self.beam.width)} × {_length(self.beam.thickness)}"
-            elif self.beam.diameter is not None:
-                size = f"⌀ {_length(self.beam.diameter)}"
+        for x, support, out in ((0.0, beam.supports[0], -1), (beam.length, beam.supports[1], 1)):
+            if support != "free":
+                self.symbol(support, self.at(x), -self.half(x) if support == "pinned" else 0.0, mirror=out)
+            self.text(self.at(x), -self.half(x) - 0.26, [support], down=True)
+        if scene.slider:
+            self.slider(scene.slider)
+        if len(beam.pieces) == 1:
+            size = f"EI = {beam.bending_stiffness:.4g} N m²"
+            if beam.thickness is not None and beam.width is not None:
+                size = f"{_length(beam.width)} × {_length(beam.thickness)}"
+            elif beam.diameter is not None:
+                size = f"⌀ {_length(beam.diameter)}"
             self.text(0.5 * WIDTH, -self.heights[0], [size], down=True)
-        for device in scene.devices:
-            words = [f"{value:.4g} {u}" for name, u in DEVICE_UNITS.items() if (value := getattr(device, name))]
-            self.dashpot(self.at(device.position), self.half(device.position), words)
-        for x, load in scene.shunts:
-            parts = (("resistance", "Ω"), ("inductance", "H"), ("capacitance", "F"))
-            words = [f"{value:.4g} {u}" for name, u in parts if (value := getattr(load, name)) is not None]
-            self.dashpot(self.at(x), self.half(x), words)
-        unit = DRIVE_UNITS[scene.drive.kind] if scene.drive is not None else "N"
+        for place, one in [*((device.position, device) for device in scene.devices), *scene.shunts]:
+            self.symbol("dashpot", self.at(place), self.half(place), SPRING)
+            self.text(self.at(place), self.half(place) + 0.55, _values(one))
         for force in scene.forces:
-            phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
-            x, y = self.at(force.position), self.half(force.position) + self.load(scene, force.position)
+            phase, x = f", {force.phase_deg:g}°" if force.phase_deg else "", self.at(force.position)
+            y = max([self.half(force.position), *(top for at, top in self.bodies if abs(at - x) < 0.25)])
             self.arrow((x, y + 0.6), (x, y + 0.03), FORCE)
-            self.text(x, y + 0.64, [f"x = {_length(force.position)}", f"{force.amplitude:.4g} {unit}{phase}"])
+            amplitude = f"{force.amplitude:.4g} {DRIVE_UNITS[scene.drive.kind]}{phase}"
+            self.text(x, y + 0.64, [f"x = {_length(force.position)}", amplitude])
         if scene.drive is not None:
-            self.text(0.5 * WIDTH, self.top, [f"drive at {scene.drive.frequency_hz:g} Hz"])
+            self.text(0.5 * WIDTH, self.extent[1], [f"drive at {scene.drive.frequency_hz:g} Hz"])
+        ax.set_axis_off()
+        ax.set(xlim=(0.0, WIDTH), ylim=self.extent, aspect="equal")
 
-    def frame(self) -> None:
-        self.ax.set_axis_off()
-        self.ax.set(xlim=(0.0, WIDTH), ylim=(self.bottom, self.top), aspect="equal")
+    def attached(self) -> None:
+        for spring in self.beam.spring:
+            x, y = self.at(spring.position), self.half(spring.position)
+            if spring.stiffness:
+                self.symbol("spring", x, -y, SPRING)
+                self.taken.append((x - 0.15, x + 0.15, -y - 0.44, -y))
+                self.text(x, -y - 0.46, [f"{spring.stiffness:.4g} N/m"], down=True)
+            if spring.rotational:
+                self.ax.plot(x, 0.0, color=SPRING, marker="$↺$", markersize=16.0)
+                self.text(x, y + 0.12, [f"{spring.rotational:.4g} N m/rad"])
+        for mass in self.beam.mass:
+            x, y = self.at(mass.position), self.half(mass.position)
+            self.ax.plot(x, y + 0.11, color=INK, marker="o", markersize=15.0)
+            self.bodies.append((x, y + 0.24))
+            self.text(x, y + 0.26, _values(mass))
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Lowest and highest place of what is drawn."""
+        heights = [*self.ax.dataLim.intervaly, *(y for place in self.taken for y in place[2:])]
+        return min(heights) - 0.05, max(heights) + 0.05
 
     def at(self, x: float) -> float:
         return float(EDGE + (WIDTH - 2 * EDGE) * x / self.beam.length)
 
     def half(self, x: float) -> float:
-        end = 0.0
-        for piece, height in zip(self.beam.pieces, self.heights, strict=True):
-            end += piece.length
-            if x <= end * (1.0 + 1e-12):
-                return 0.5 * height
-        return 0.5 * self.heights[-1]
+        """Half the drawn thickness at x."""
+        inside = (end * (1.0 + 1e-12) >= x for _, end in pairwise(self.ends))
+        return 0.5 * next((h for h, here in zip(self.heights, inside, strict=True) if here), self.heights[-1])
 
-    def load(self, scene: Any, x: float) -> float:
-        """Height of a mass or slider that stands on the beam near x."""
-        near = 0.25 * self.beam.length / (WIDTH - 2 * EDGE)
-        if any(abs(mass.position - x) < near for mass in self.beam.mass):
-            return 0.24
-        return 0.22 if scene.slider and abs(scene.slider.initial_position(self.beam) - x) < near else 0.0
-
-    def line(self, *points: tuple[float, float], color: str = INK, width: float = 1.3, **more: Any) -> None:
-        self.ax.plot(*zip(*points, strict=True), color=color, linewidth=width, **more)
-        self.top = max(self.top, *(y + 0.05 for _, y in points))
-        self.bottom = min(self.bottom, *(y - 0.05 for _, y in points))
+    def symbol(self, name: str, x: float, y: float, color: str = INK, mirror: int = 1) -> None:
+        points = [(x + mirror * dx, y + dy) for dx, dy in SYMBOLS[name]]
+        self.ax.plot(*zip(*points, strict=True), color=color, linewidth=1.3)
 
     def box(self, x: float, y: float, width: float, height: float, color: str, **more: Any) -> None:
         from matplotlib.patches import Rectangle
 
-        self.ax.add_patch(Rectangle((x, y), width, height, facecolor=color, edgecolor=color, **{"alpha": 0.75} | more))
-        self.top, self.bottom = max(self.top, y + height + 0.05), min(self.bottom, y - 0.05)
+        look = {"facecolor": color, "edgecolor": color, "alpha": 0.75} | more
+        self.ax.add_patch(Rectangle((x, y), width, height, **look))
 
     def arrow(self, tail: tuple[float, float], head: tuple[float, float], color: str) -> None:
         style = {"arrowstyle": "-|>,head_width=0.22,head_length=0.45", "color": color, "linewidth": 1.8}
         self.ax.annotate("", head, tail, arrowprops=style | {"shrinkA": 0.0, "shrinkB": 0.0})
-        self.top, self.bottom = max(self.top, tail[1], head[1]), min(self.bottom, tail[1], head[1])
+        self.ax.update_datalim([tail, head])
 
     def text(self, x: float, y: float, rows: list[str], down: bool = False) -> None:
         """Text above y, or below it: moved away from the beam, row by row, until nothing else stands there."""
@@ -131,91 +162,30 @@ class _Sketch:
         self.taken.append((x - half, x + half, low, high))
         for i, row in enumerate(rows):
             self.ax.text(x, high - ROW * (i + 0.5), row, ha="center", va="center", fontsize=8.5)
-        self.top, self.bottom = max(self.top, high), min(self.bottom, low)
 
-    def sections(self) -> None:
-        beam, start = self.beam, 0.0
-        for piece, height in zip(beam.pieces, self.heights, strict=True):
-            self.box(self.at(start), -0.5 * height, self.at(piece.length) - EDGE, height, BODY, alpha=0.45)
-            start += piece.length
+    def loads(self) -> None:
+        """Foundation and axial force."""
+        beam, left, right = self.beam, EDGE, WIDTH - EDGE
         if beam.foundation:
-            n = int(4 * WIDTH)
-            for i in range(n):
-                x = EDGE + (WIDTH - 2 * EDGE) * (i + 0.5) / n
-                zigzag = ((x, 0.0), (x - 0.05, -0.16), (x + 0.05, -0.26), (x, -0.36))
-                self.line(*zigzag, color=SOFT, width=0.8, zorder=0)
-            self.line((EDGE, -0.36), (WIDTH - EDGE, -0.36), color=SOFT)
-            self.taken.append((EDGE, WIDTH - EDGE, -0.38, 0.0))
+            self.box(left, -0.36, right - left, 0.36 - 0.5 * self.heights[0], "none", hatch="////", edgecolor=SOFT)
+            self.taken.append((left, right, -0.38, 0.0))
             self.text(0.5 * WIDTH, -0.4, [f"foundation {beam.foundation:.4g} N/m²"], down=True)
         if beam.tension:
-            for x, out in ((EDGE - 0.14, -1), (WIDTH - EDGE + 0.14, 1)):
+            for x, out in ((left - 0.14, -1), (right + 0.14, 1)):
                 tail, head = sorted((x, x + 0.32 * out), reverse=(out > 0) != (beam.tension > 0))
                 self.arrow((tail, 0.0), (head, 0.0), SPRING)
             self.text(WIDTH - 0.3, 0.2, [f"{beam.tension:.4g} N"])
 
-    def support(self, x: float, half: float, support: str, out: int) -> None:
-        if support in ("clamped", "guided"):
-            wall, tall = (x if support == "clamped" else x + 0.12 * out), half + 0.2
-            self.line((wall, -tall), (wall, tall), width=2.0)
-            for i in range(6):
-                y = -tall + 2 * tall * (i + 0.7) / 6
-                self.line((wall, y), (wall + 0.1 * out, y - 0.08), color=SOFT, width=0.9)
-            if support == "guided":
-                self.line((x + 0.06 * out, 0.1), (x + 0.06 * out, -0.1), width=0.0, marker="o", markersize=5.0)
-        elif support == "pinned":
-            self.line((x, -half), (x - 0.13, -half - 0.2), (x + 0.13, -half - 0.2), (x, -half))
-            self.line((x - 0.2, -half - 0.22), (x + 0.2, -half - 0.22), color=SOFT)
-        self.text(x, -half - 0.26, [support], down=True)
-
-    def attached(self) -> None:
-        for spring in self.beam.spring:
-            x, y = self.at(spring.position), -self.half(spring.position)
-            if spring.stiffness:
-                zigzag = [(x + (0.07 if i % 2 else -0.07), y - 0.1 - 0.045 * i) for i in range(6)]
-                self.line((x, y), (x, y - 0.06), *zigzag, (x, y - 0.37), (x, y - 0.42), color=SPRING)
-                self.line((x - 0.14, y - 0.42), (x + 0.14, y - 0.42), color=SOFT)
-                self.taken.append((x - 0.15, x + 0.15, y - 0.44, y))
-                self.text(x, y - 0.46, [f"{spring.stiffness:.4g} N/m"], down=True)
-            if spring.rotational:
-                self.line((x, 0.0), color=SPRING, width=0.0, marker="$↺$", markersize=16.0)
-                self.text(x, -y + 0.12, [f"{spring.rotational:.4g} N m/rad"])
-        for mass in self.beam.mass:
-            x, y = self.at(mass.position), self.half(mass.position)
-            self.line((x, y + 0.11), width=0.0, marker="o", markersize=15.0)
-            values = ((mass.mass, "kg"), (mass.rotary_inertia, "kg m²"))
-            self.text(x, y + 0.26, [f"{value:.4g} {unit}" for value, unit in values if value])
-
-    def dashpot(self, x: float, y: float, words: list[str]) -> None:
-        self.line((x, y), (x, y + 0.24), color=SPRING)
-        self.line((x - 0.06, y + 0.24), (x + 0.06, y + 0.24), color=SPRING)
-        cup = ((x - 0.1, y + 0.14), (x - 0.1, y + 0.34), (x + 0.1, y + 0.34), (x + 0.1, y + 0.14))
-        self.line(*cup, color=SPRING)
-        self.line((x, y + 0.34), (x, y + 0.5), color=SPRING)
-        self.line((x - 0.15, y + 0.5), (x + 0.15, y + 0.5), color=SOFT)
-        self.text(x, y + 0.55, words)
-
     def slider(self, slider: Any) -> None:
-        if slider is None:
-            return
-        start = slider.initial_position(self.beam)
-        if not slider.foot:
-            x, y = self.at(start), self.half(start)
-            self.box(x - 0.2, y + 0.02, 0.4, 0.2, SLIDER)
-            self.text(x, y + 0.26, [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}, μ = {slider.mu:g}"])
-            return
-        tops = []
-        for foot in slider.foot:
-            x, half = self.at(start + foot.offset), self.half(start + foot.offset)
-            length, sign = max(self.at(foot.length) - EDGE, 0.2), -1.0 if foot.face == "lower" else 1.0
-            near, far = sorted((sign * (half + 0.08), sign * (half + 0.2)))
-            self.box(x - 0.5 * length, near, length, far - near, SLIDER)
-            self.taken.append((x - 0.5 * length, x + 0.5 * length, near - 0.05, far + 0.05))
-            for i in range(min(foot.points, 24)):
-                tooth = x - 0.5 * length + length * (i + 0.5) / min(foot.points, 24)
-                self.line((tooth, sign * half), (tooth, sign * (half + 0.08)), color=SLIDER)
-            if foot.mirrored:
-                self.box(x - 0.5 * length - 0.2, far + 0.08, length + 0.4, 2 * half, BODY, alpha=0.25, linestyle="--")
-                far += 0.1 + 2 * half
-            tops.append(far)
-        rows = [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}, feet: {len(slider.foot)}"]
-        self.text(self.at(start), max(tops) + 0.08, rows)
+        start, words = slider.initial_position(self.beam), [f"slider {with_unit(1e3 * slider.mass, 'g', '.4g')}"]
+        places = [(start + foot.offset, max(self.at(foot.length) - EDGE, 0.2), foot) for foot in slider.foot]
+        words.append(f"feet: {len(places)}" if places else f"μ = {slider.mu:g}")
+        for x, length, foot in places or [(start, 0.4, None)]:
+            y = -self.half(x) - 0.22 if foot and foot.face == "lower" else self.half(x) + 0.02
+            self.box(self.at(x) - 0.5 * length, y, length, 0.2, SLIDER)
+            self.bodies.append((self.at(x), y + 0.2))
+            if foot and foot.mirrored:
+                self.box(self.at(x) - 0.5 * length - 0.2, y + 0.28, length + 0.4, 2 * self.half(x), BODY, alpha=0.25)
+                self.bodies.append((self.at(x), y + 0.28 + 2 * self.half(x)))
+            self.taken.append((self.at(x) - 0.5 * length, self.at(x) + 0.5 * length, y, y + 0.2))
+        self.text(self.at(start), max(top for _, top in self.bodies) + 0.04, [", ".join(words)])
