@@ -14,8 +14,7 @@ from verify.report.plotting import INK, MODEL_COLORS, movie_frames
 from verify.report.result import Movie
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
 
     from verify.scene.model import Scene
 
@@ -33,7 +32,7 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
     if kind == "png":
         largest = int(np.argmax(abs(frames["deflection"]).max(axis=1)))
         frames = {name: values[largest : largest + 1] for name, values in frames.items()}
-    drawn = movie_frames(movie(scene, data, frames), 110.0, INK, "white")[0]
+    drawn = movie_frames(movie(scene, data, frames), 110.0, INK, "white")
     pictures = [image.convert("RGB") for image in drawn]
     with whole(path, "to") as part:
         if kind == "png":
@@ -60,10 +59,7 @@ def _frames(data: Dataset, request: Request) -> "dict[str, Array]":
 def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
     """The frames as a movie: the beam at its supports, forces as arrows, the slider on the surface."""
 
-    def animate(figure: "Figure") -> "FuncAnimation":
-        from matplotlib.animation import FuncAnimation
-
-        ax: Any = figure.subplots()
+    def animate(ax: "Axes") -> Any:
         length, deflection = scene.beam.length, frames["deflection"]
         scale = HEIGHT * length / float(abs(deflection).max())
         color = MODEL_COLORS["segment" if data.links else "fem"]
@@ -91,6 +87,6 @@ def movie(scene: "Scene", data: Dataset, frames: "dict[str, Array]") -> Movie:
                 slider.set_data([at], [height])
             return [line, slider, text]
 
-        return FuncAnimation(figure, update, frames=len(deflection), interval=1000.0 / FPS)
+        return update, range(len(deflection))
 
     return Movie(data.what, data.title, "", animate)

@@ -48,7 +48,7 @@ def beam_figure(scene: Any) -> Figure:
         id="beam",
         title="The beam",
         caption=f"{_length(beam.length)} long, {beam.supports[0]} at the left, {beam.supports[1]} at the right{there}.",
-        draw=lambda ax: _Sketch(scene, ax),
+        draw=lambda ax: _Sketch(scene, ax).frame(),
         size=(WIDTH, top - bottom),
     )
 
@@ -103,8 +103,10 @@ class _Sketch:
             self.text(x, y + 0.64, [f"x = {_length(force.position)}", amplitude])
         if scene.drive is not None:
             self.text(0.5 * WIDTH, self.extent[1], [f"drive at {scene.drive.frequency_hz:g} Hz"])
-        ax.set_axis_off()
-        ax.set(xlim=(0.0, WIDTH), ylim=self.extent, aspect="equal")
+
+    def frame(self) -> None:
+        self.ax.set_axis_off()
+        self.ax.set(xlim=(0.0, WIDTH), ylim=self.extent, aspect="equal")
 
     def attached(self) -> None:
         for spring in self.beam.spring:
@@ -143,7 +145,7 @@ class _Sketch:
     def box(self, x: float, y: float, width: float, height: float, color: str, **more: Any) -> None:
         from matplotlib.patches import Rectangle
 
-        look = {"facecolor": color, "edgecolor": color, "alpha": 0.75} | more
+        look: dict[str, Any] = {"facecolor": color, "edgecolor": color, "alpha": 0.75} | more
         self.ax.add_patch(Rectangle((x, y), width, height, **look))
 
     def arrow(self, tail: tuple[float, float], head: tuple[float, float], color: str) -> None:
