@@ -6,7 +6,7 @@ across it. Coordinates are the paper's relative joint angles q_i = theta_i - the
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import pi, radians, sin
+from math import pi
 
 import numpy as np
 
@@ -19,26 +19,6 @@ from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
 from verify.validation import check_choice, check_number, check_unmasked
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rotation:
-    """The hub's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), rad."""
-
-    offset: float = 0.0
-    rate: float = 0.0  # rad/s
-    amplitude: float = 0.0
-    frequency_hz: float = 0.0
-    phase_deg: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
-            check_number(f"rotation.{name}", getattr(self, name), "SI, degrees for the phase")
-
-    @property
-    def constant(self) -> float:
-        """The constant part of the angle, rad: the offset, and an amplitude without a frequency."""
-        return self.offset + (0.0 if self.frequency_hz else self.amplitude * sin(radians(self.phase_deg)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +58,7 @@ class ChainSystem:
     """(N,), EA of links that stretch, N; (0,) of rigid ones."""
     axial_inertia: bool = True  # whether links have inertia along x, which rigid links overestimate
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
-    rotation: Rotation = Rotation()  # rotation of the hub
+    hub_rate: float = 0.0  # angular velocity of the hub, rad/s, whose angle at time 0 is 0
     loads: tuple[LinkLoad, ...] = ()
 
     def __post_init__(self) -> None:
@@ -95,6 +75,7 @@ class ChainSystem:
             for i, value in enumerate(values.tolist(), start=1):
                 check_number(f"chain.{name} of link {i}", value, "SI", **{limit: 0.0})
         check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
+        check_number("chain.hub_rate", self.hub_rate, "rad/s")
         for value in self.gravity:
             check_number("chain.gravity", value, "m/s^2")
         if self.tip not in TIPS:
