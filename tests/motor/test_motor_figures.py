@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
-from verify.motor.curves import no_load, phase_portrait, reversal, stop, transient
+from verify.motor.curves import no_load, reversal, stop, transient
 from verify.motor.steady_state import MotorCase, batch_error, crest_speed, steady_state
 from verify.motor.travelling_wave import foot_on_wave
 
@@ -190,22 +190,6 @@ def test_a_light_motor_runs_slower_than_the_speed_at_which_a_heavy_one_has_no_lo
     free = [transient(light(0.0, mass), 400).speed for mass in (1e-3, 0.3)]
     assert free[0] / prescribed == pytest.approx(0.2, abs=0.03)
     assert free[1] == pytest.approx(prescribed, rel=0.03)
-
-
-def on_spring(ratio, zeta, **given):
-    """A point on a linear spring that never leaves the wave: drive over natural frequency, damping ratio."""
-    mass, own = 2e-3, OMEGA / ratio
-    contact = Contact(stiffness=mass * own**2, damping=2.0 * zeta * mass * own)
-    pressed = {"mu": MU, "gravity": 0.0, "preload": 30.0 * mass * HEIGHT * OMEGA**2, "position": MIDDLE}
-    return case_of(Slider(mass=mass, coupling="one-way", contact=contact, **pressed), FORCES, **given)
-
-
-def test_a_phase_portrait_has_the_rates_of_its_heights():
-    """Harmonic motion: differences of twelve samples a period are 4.5 % low."""
-    case = on_spring(0.6, 0.2)
-    heights, rates = phase_portrait(case, steady_state(case, 0.0).run)
-    assert np.ptp(rates) == pytest.approx(OMEGA * np.ptp(heights), rel=5e-3)
-    assert heights[-1] == pytest.approx(heights[0], abs=1e-3 * np.ptp(heights))
 
 
 # --- means of a slider that bounces
