@@ -74,12 +74,6 @@ def test_force_and_efficiency_are_integrals_over_the_contact(phi, r):
     assert layer.efficiency(phi, r) == pytest.approx(r * drag / power, rel=1e-11)
 
 
-def test_a_layer_at_rest_transmits_all_friction_up_to_a_compliance_of_cot_phi():
-    edge = cos(0.8) / sin(0.8)
-    assert layer.force(0.8, 0.0, 0.999 * edge) == pytest.approx(1.0, abs=1e-12)
-    assert layer.force(0.8, 0.0, 1.01 * edge) < 1.0 - 1e-7
-
-
 @pytest.mark.parametrize(
     ("ratio", "phase"), [(1.5, 4.295944393155), (2.0, 5.182450251310), (37.3, None), (2.71e5, None)]
 )

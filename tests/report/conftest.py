@@ -38,11 +38,6 @@ def animate(ax):
 
 
 @pytest.fixture(scope="session")
-def points():
-    return SIZES, ERRORS
-
-
-@pytest.fixture(scope="session")
 def figures():
     return [
         Figure("lines", "Error over N", "Solid: segments.", draw_lines),
