@@ -7,7 +7,6 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
-from verify.validation import check_unmasked
 
 
 class Positions(NamedTuple):
@@ -36,13 +35,8 @@ def project(system: ChainSystem, state: ChainState) -> ChainState:
     """The state with the tip on its roller.
 
     One joint angle depends on the others, that with the longest lever arm: the links beyond it turn as one, and their
-    rate cancels the tip's across. Raises InputError where they do not reach the roller, for a wrong shape and a value
-    that is not finite.
+    rate cancels the tip's across. Raises InputError where they do not reach the roller.
     """
-    for name in ("angles", "rates"):
-        check_unmasked(f"state.{name}", getattr(state, name), "SI")
-        if np.shape(getattr(state, name)) != (system.n_links,) or not np.isfinite(getattr(state, name)).all():
-            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
     q, v = (np.array(values, dtype=float) for values in (state.angles, state.rates))
     if system.tip == "free":
         return ChainState(q, v, state.time)

@@ -13,12 +13,12 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
-from verify.options import LINKS, TIPS, Joints, Links, Load, Tip, Wall
+from verify.options import LINKS, Joints, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
-from verify.validation import check_choice, check_number, check_unmasked
+from verify.validation import check_choice, check_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,20 +32,10 @@ class LinkLoad:
     frequency_hz: float = 0.0
     phase_deg: float = 0.0
 
-    def __post_init__(self) -> None:
-        for name, value in zip(("force x", "force y", "moment"), (*self.force, self.moment), strict=True):
-            check_number(f"load.{name}", value, "N, N m")
-        check_number("load.frequency_hz", self.frequency_hz, "hertz, 0 for a constant load", at_least=0)
-        check_number("load.phase_deg", self.phase_deg, "degrees")
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChainSystem:
-    """N rigid links, joint springs and dashpots, a hub, a tip, loads. SI.
-
-    Raises InputError for a link without length, mass or inertia, negative springs or dashpots, loads off their links,
-    and a tip that cannot move along x.
-    """
+    """N rigid links, joint springs and dashpots, a hub, a tip, loads. SI."""
 
     lengths: Array  # (N,)
     masses: Array  # (N,)
@@ -60,37 +50,6 @@ class ChainSystem:
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
     hub_rate: float = 0.0  # angular velocity of the hub, rad/s, whose angle at time 0 is 0
     loads: tuple[LinkLoad, ...] = ()
-
-    def __post_init__(self) -> None:
-        n = len(self.lengths)
-        if n == 0:
-            raise InputError("chain.lengths is empty: give at least one link")
-        stretching = () if self.rigid else ("axial_stiffness",)
-        for name in ("lengths", "masses", "inertias", "stiffness", "dashpots", *stretching):
-            check_unmasked(f"chain.{name}", getattr(self, name), "SI")
-            values = np.asarray(getattr(self, name), dtype=float)
-            if values.shape != (n,):
-                raise InputError(f"chain.{name} has the shape {values.shape}: give one value for each of {n} links")
-            limit = "at_least" if name in ("stiffness", "dashpots") else "above"
-            for i, value in enumerate(values.tolist(), start=1):
-                check_number(f"chain.{name} of link {i}", value, "SI", **{limit: 0.0})
-        check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
-        check_number("chain.hub_rate", self.hub_rate, "rad/s")
-        for value in self.gravity:
-            check_number("chain.gravity", value, "m/s^2")
-        if self.tip not in TIPS:
-            raise InputError(
-                f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
-                "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "
-                "EA/L for an immovable end"
-            )
-        if self.axial_spring and self.tip == "free":
-            raise InputError(f"chain.axial_spring = {self.axial_spring!r} acts at a roller: give tip = 'roller' or 0")
-        for load in self.loads:
-            if not 1 <= load.link <= n:
-                raise InputError(f"load.link = {load.link!r}: the chain has links 1 to {n}")
-            most = float(self.lengths[load.link - 1]) * (1.0 + 1e-12)
-            check_number("load.at", load.at, "metres from the link's near joint", at_least=-1e-12 * most, at_most=most)
 
     @property
     def n_links(self) -> int:
