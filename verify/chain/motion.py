@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import structs
@@ -24,7 +24,6 @@ from verify.validation import check_number
 if TYPE_CHECKING:
     from verify.chain.runge_kutta import Marched
 
-Method = Literal["rk4", "adaptive"]
 Progress = Callable[[float], None]  # called with the completed fraction of a motion, 0 to 1
 FAR = 0.3  # rotation of links, rad, above which a motion from rest is confirmed by a second run
 AGREED = 0.01  # largest distance of two runs, over the largest deflection, at which the second confirms the first
@@ -33,7 +32,6 @@ AGREED = 0.01  # largest distance of two runs, over the largest deflection, at w
 class ChainStatistics(Statistics, frozen=True, kw_only=True):
     """Cost and end of a chain's run."""
 
-    method: Method
     furthest: float
     """Largest rotation of a link from the straight chain, rad, at the ends of steps; of stretching links at samples."""
 
@@ -201,7 +199,7 @@ def simulate(
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
-    statistics = _statistics("rk4" if step else "adaptive", run, run.furthest, began, ready)
+    statistics = _statistics(run, run.furthest, began, ready)
     return RigidMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
 
 
@@ -226,17 +224,16 @@ def simulate_elastic(
     spacing, ready = float(samples[1]), perf_counter()
     step = spacing / np.ceil(spacing / step - 1e-9)
     run = integrate(elastic_links.accelerate, model, RK4, size, y, 0.0, samples, step, (0.0, 0.0, 0.0, np.inf))
-    statistics = _statistics("rk4", run, 0.0, began, ready)
+    statistics = _statistics(run, 0.0, began, ready)
     motion = ElasticMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
     return replace(motion, statistics=structs.replace(statistics, furthest=float(abs(motion.directions()).max())))
 
 
-def _statistics(method: Method, run: "Marched", furthest: float, began: float, ready: float) -> ChainStatistics:
+def _statistics(run: "Marched", furthest: float, began: float, ready: float) -> ChainStatistics:
     """Cost and end of a run that began and was ready for its steps at these times."""
-    steps, _, evaluations, _ = run.counts.tolist()
+    steps, evaluations, _ = run.counts.tolist()
     reason = {2: "diverged", 3: "the step became too small"}
     return ChainStatistics(
-        method=method,
         steps=steps,
         evaluations=evaluations,
         step_s=run.step,

@@ -187,7 +187,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),
             stage.edges[[0, -1]] - contacts.start, links, loads, numbers, scratch, tableau.a, tableau.c, n, substep,
             np.zeros(0), np.zeros((len(tableau.c) + 3, width)), np.zeros(2), np.array([0.0, 0.0, 0.0, np.pi, 0, 0, 0]),
-            np.zeros(4, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
+            np.zeros(3, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
             np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
             contacts.feet, contacts.points, contacts.contacts, contacts.indices, run.feet_of,
             np.zeros((4, 2, columns)), np.zeros((count, 2, 4)), np.zeros(count, dtype=np.int64),

@@ -1,7 +1,7 @@
 """Exact frequencies and mode shapes of uniform beams in closed form.
 
-Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, the frequencies of a
-pinned-pinned beam by Rayleigh's and Timoshenko's theories, and those of a rod in extension and torsion.
+Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, waves by Timoshenko's
+theory, and the frequencies of a rod in extension and torsion.
 """
 
 from collections.abc import Callable
