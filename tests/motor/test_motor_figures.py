@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
 from verify.motor.curves import no_load, reversal, stop, transient
+from verify.motor.periodic_orbit import periodic_orbit
 from verify.motor.steady_state import MotorCase, batch_error, crest_speed, steady_state
 from verify.motor.travelling_wave import foot_on_wave
 
@@ -190,6 +191,24 @@ def test_a_light_motor_runs_slower_than_the_speed_at_which_a_heavy_one_has_no_lo
     free = [transient(light(0.0, mass), 400).speed for mass in (1e-3, 0.3)]
     assert free[0] / prescribed == pytest.approx(0.2, abs=0.03)
     assert free[1] == pytest.approx(prescribed, rel=0.03)
+
+
+def on_spring(ratio, zeta, **given):
+    """A point on a linear spring that never leaves the wave: drive over natural frequency, damping ratio."""
+    mass, own = 2e-3, OMEGA / ratio
+    contact = Contact(stiffness=mass * own**2, damping=2.0 * zeta * mass * own)
+    pressed = {"mu": MU, "gravity": 0.0, "preload": 30.0 * mass * HEIGHT * OMEGA**2, "position": MIDDLE}
+    return case_of(Slider(mass=mass, coupling="one-way", contact=contact, **pressed), FORCES, **given)
+
+
+@pytest.mark.parametrize(("ratio", "zeta"), [(0.6, 0.07), (1.9, 0.2)])
+def test_a_periodic_orbit_has_the_multipliers_of_its_spring(ratio, zeta):
+    """exp(omega_c T (-zeta +- i sqrt(1 - zeta^2))) over a period."""
+    found = periodic_orbit(on_spring(ratio, zeta, steps_per_period=400))
+    wanted = np.exp(2.0 * pi / ratio * (-zeta + 1j * sqrt(1.0 - zeta**2) * np.array([1.0, -1.0])))
+    assert abs(found.multipliers).max() < 1.0
+    assert found.residual < 1e-10
+    assert np.sort_complex(np.array(found.multipliers)) == pytest.approx(np.sort_complex(wanted), abs=2e-3)
 
 
 # --- means of a slider that bounces

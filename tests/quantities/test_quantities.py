@@ -104,6 +104,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slider.terminal_speed": ("driven", {"amplitude": 1e-6, "slope": 310.0, "mu": 0.23}),
     "motion.reflection": ("driven", {**TIME, "time": 4e-3, "window": [0.2, 0.5], "start": "steady"}),
     **{f"motor.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_fraction", "stick_fraction")},
+    "motor.multiplier": ("motor", HELD),
     **{f"motor.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "friction_power")},
     "motor.efficiency": ("motor", {**HELD, "speed": -3e-4}), "motor.no_load_speed": ("motor", HELD),
     **{f"motor.{n}": ("motor", {**HELD, "periods": 400}) for n in ("free_speed", "start_time")},

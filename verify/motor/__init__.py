@@ -1,1 +1,1 @@
-"""Characteristics of a motor: steady states, curves, sliders on a travelling wave."""
+"""Characteristics of a motor: steady states, curves, periodic orbits, sliders on a travelling wave."""

@@ -140,6 +140,14 @@ def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
     return time
 
 
+@quantity("motor.multiplier", unit="1")
+def multiplier(scene: Scene, cache: "SolutionCache", motor: MotorOptions, *, speed: Speed = 0.0) -> float:
+    """Largest Floquet multiplier of the periodic motion at a prescribed speed; stable below 1."""
+    from verify.motor.periodic_orbit import periodic_orbit
+
+    return float(max(abs(cached(cache, periodic_orbit, motor.case(scene), speed).multipliers)))
+
+
 @quantity("motor.contact_imbalance", unit="1")
 def contact_imbalance(scene: Scene, motor: FreeRun) -> float:
     """Residual of the free slider's energy balance, over the work of the surface."""
