@@ -20,7 +20,7 @@ from verify.travelling_wave import DrivenCase, best_drive, matched_device, measu
 BEAM, HERTZ = replace(BEAMS["clamped-pinned"], loss_factor=0.007), 733.0
 OMEGA, X = 2.0 * np.pi * HERTZ, np.linspace(0.03, 0.7, 17)
 SOFT = Stack(layers=11, layer_thickness=4.1e-4, area=2.3e-9, dielectric_loss=0.011, mechanical_loss=0.017,
-             piezoelectric_loss=0.009)  # fmt: skip
+             piezoelectric_loss=0.009, layering="one-bar")  # fmt: skip
 CLEAN = SOFT.lossless
 FORCE = PointForce(position=0.52, amplitude=0.7, phase_deg=31.0)
 DEVICE = Device(position=0.61, dashpot=1.3, stiffness=910.0)
@@ -51,13 +51,13 @@ def test_stacks_on_elements_are_those_of_rods_and_charges(stiffness):
     written = Elements(BEAM, nodes)
     row = written.row(DEVICE.position, 0)
     more = DEVICE.dynamic_stiffness(OMEGA) * np.outer(row, row)
-    expected = solve(BEAM, nodes, rods, HERTZ, X, written.load([FORCE]), more)
+    w, *expected = solve(BEAM, nodes, rods, HERTZ, X, written.load([FORCE]), more)
     found = on_beam(HermiteModel(BEAM, count), mounted(actuator), HERTZ, forces=FORCE, devices=DEVICE)
-    close(found.field.deflection(X), expected.w, 2e-8)
+    close(found.field.deflection(X), w, 2e-8)
     for i, one in enumerate(found.actuators):
         ports = [getattr(one, name) for name in ("voltage", "current", "velocity")]
-        close(np.array(ports), np.array([expected.voltage[i], expected.current[i], expected.velocity[i]]), 2e-8)
-        assert one.velocity == pytest.approx(expected.velocity[i], rel=1e-6)
+        close(np.array(ports), np.array([values[i] for values in expected]), 2e-8)
+        assert one.velocity == pytest.approx(expected[2][i], rel=1e-6)
 
 
 @over(MODELS)
@@ -182,7 +182,7 @@ def test_voltages_of_stiff_stacks_reverse_the_papers_wave():
 def test_one_stack_takes_the_power_that_the_other_returns():
     case = paper(volts=100.0, actuator=replace(STACK, layering="one-bar"))
     first, second = case.actuated(case.acting, PAPER_HZ).actuators
-    assert second.power_in == pytest.approx(3.19474e-3, abs=5e-9)
+    assert second.power_in == pytest.approx(3.19474e-3, abs=5e-9)  # layer by layer 1.5e-6 more, relatively
     assert first.power_in == pytest.approx(-second.power_in, rel=1e-9)
     assert wave_of(case).energy_flux == pytest.approx(-second.power_in, rel=1e-8)
 

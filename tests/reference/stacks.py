@@ -15,11 +15,11 @@ RODS = 40
 
 
 class Ceramic(NamedTuple):
-    """Of a slender bar along the field."""
+    """Of a slender bar along the field: sE33, 1/Pa, d33, C/N, epsT33, F/m, density."""
 
-    s: complex  # sE33, 1/Pa
-    d: complex  # C/N
-    epsilon: complex  # epsT33, F/m
+    s: complex
+    d: complex
+    epsilon: complex
     density: float
 
 
@@ -36,17 +36,11 @@ class Rod(NamedTuple):
     current: complex | None = None
 
 
-class Solution(NamedTuple):
-    """Deflections at x, and voltage, current, tip velocity of each stack."""
+def solve(beam: Any, nodes: Any, rods: list[Rod], hertz: float, x: Any, load: Any = 0.0, more: Any = 0.0) -> Any:
+    """(deflections at x, and voltage, current, tip velocity of each stack); the loss factor acts in bending.
 
-    w: Any
-    voltage: Any
-    current: Any
-    velocity: Any
-
-
-def solve(beam: Any, nodes: Any, rods: list[Rod], hertz: float, x: Any, load: Any = 0.0, more: Any = 0.0) -> Solution:
-    """The steady state, the beam's loss factor in bending; `load` and `more` stiffness over the nodal values."""
+    `load` and `more` stiffness are over the nodal values.
+    """
     written, omega = Elements(beam, nodes), 2.0 * pi * hertz
     own = np.array(written.free)
     bending = written.bending * (1.0 + 1j * beam.loss_factor) + written.rest + more - omega**2 * written.mass
@@ -84,4 +78,4 @@ def solve(beam: Any, nodes: Any, rods: list[Rod], hertz: float, x: Any, load: An
     values[own] = found[:n]
     charges, voltages = found[np.array(taps)].T
     speeds = 1j * omega * (rows @ found[:n])
-    return Solution(written.values_at(values, x, 0), voltages, 1j * omega * charges, speeds)
+    return written.values_at(values, x, 0), voltages, 1j * omega * charges, speeds

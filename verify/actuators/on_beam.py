@@ -30,6 +30,7 @@ from verify.linear.positions import Loads, frequencies_on, loads_on
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.supports import check_free
 from verify.validation import as_tuple, check_position
 
 QUASI_STATIC = 0.05
@@ -57,7 +58,7 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
         """The load of its mechanical port for F = 1. Raises InputError off the beam, and at a fixed point of it."""
         if not isinstance(self.actuator, Patch):
             check_position("actuator.position", self.position, beam.length)
-            Device(position=self.position, amplitude=1.0).check_on(beam)
+            check_free("actuator", self.position, beam.length, beam.supports, {"force": 1.0})
             return (PointForce(position=self.position),)
         half = 0.5 * self.actuator.length
         ends = self.position - half, self.position + half
@@ -144,7 +145,9 @@ def on_beam(
         raise ResonanceError(
             f"{error}; the fields of actuators are superposed on the beam without them, whose resonance this is"
         ) from None
-    moved = np.array([[_displacement(one, load) for one in (*units, *rest)] for load in loads]) * 1j * omega
+    fields = (*units, *rest)
+    moved = np.array([[sum(one.amplitude * f.displacement(one) for one in load) for f in fields] for load in loads])
+    moved = moved * 1j * omega
     p, ports = len(loads), [one.actuator.port(omega) for one in mounted]
     free = moved[:, p] if rest else np.zeros(p)
     blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
@@ -163,11 +166,6 @@ def on_beam(
     )
     states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
     return ActuatedBeam(field=whole, actuators=tuple(states))
-
-
-def _displacement(field: HarmonicField, loads: tuple[PointLoad, ...]) -> complex:
-    """Displacement on which a port's load does work."""
-    return sum(load.amplitude * field.displacement(load) for load in loads)
 
 
 def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:
@@ -214,8 +212,8 @@ def beam_in_time(
         return BeamInTime(beam=beam, loads=tuple(forces))
     if kind == "moment":
         return BeamInTime(beam=beam, loads=tuple(PointMoment(**asdict(one)) for one in forces))
-    if actuator is None or (kind == "current" and isinstance(actuator, Patch)):
-        what = "displacements" if actuator is None else "currents of a patch"
+    if kind == "displacement" or actuator is None or (kind == "current" and isinstance(actuator, Patch)):
+        what = "displacements" if kind == "displacement" else "currents of a patch"
         raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
     omega = 2.0 * pi * frequency_hz
     if isinstance(actuator, Patch):

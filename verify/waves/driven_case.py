@@ -8,7 +8,6 @@ import numpy as np
 from msgspec.structs import asdict, replace
 
 from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam
-from verify.actuators.patch import Patch
 from verify.actuators.port import Actuator
 from verify.actuators.shunt import Load
 from verify.arrays import Array, ComplexArray
@@ -158,8 +157,10 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
         NaN where the motion is within rounding. Raises NoFigureError where it is at all frequencies.
         """
         scale = np.ones((len(self.k), 1))
-        if self.case.kind != "displacement":
-            scale[:, 0] = [_unit_scale(self.case, float(f)) for f in self.frequencies_hz]
+        if self.case.kind == "force":
+            scale[:, 0] = [unit_response(self.case.beam, float(f)) for f in self.frequencies_hz]
+        elif self.case.kind != "displacement":  # on no support without effect
+            scale[:, 0] = abs(np.concatenate([self.forward, self.backward], axis=1)).max(axis=1)
         forward, backward = ((wave[:, None, :] @ drives)[:, 0, :] for wave in (self.forward, self.backward))
         moves = np.maximum(abs(forward), abs(backward)) > ROUNDING * scale * abs(drives).sum(axis=-2)
         if not moves.any():
@@ -194,22 +195,6 @@ def unit_waves(case: DrivenCase, frequencies_hz: Array, window: Window) -> UnitW
     waves[known] = np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(responses[known], 1, 2))
     forward, backward = waves[:, 0], waves[:, 1]
     return UnitWaves(case, frequencies_hz, k, forward, backward, tuple(missing))
-
-
-def _unit_scale(case: DrivenCase, hertz: float) -> float:
-    """Scale of the deflection per unit amplitude, for comparison with rounding."""
-    response, omega = unit_response(case.beam, hertz), 2.0 * np.pi * hertz
-    if case.kind == "moment":
-        return response * abs(wavenumber(case.beam, hertz))
-    if case.actuator is None or not case.electrical:
-        return response
-    port = case.actuator.port(omega)
-    factor, own = abs(complex(port.force_factor)), abs(complex(port.short_impedance))
-    if case.kind == "current":
-        factor, own = factor / abs(complex(port.blocked_admittance)), abs(complex(port.loaded_impedance()))
-    if isinstance(case.actuator, Patch):
-        return factor * response * abs(wavenumber(case.beam, hertz))
-    return factor / (1.0 / response + omega * own)
 
 
 def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[float], x: Array) -> ComplexArray:
