@@ -17,6 +17,7 @@ from verify.cli import cli, status_of
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
+GUIDES = [ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control")]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -73,7 +74,7 @@ def ran(line, capsys, monkeypatch):
     return status, err if status == 2 else out
 
 
-@pytest.mark.parametrize("page", [ROOT / "README.md", ROOT / "docs/engines.md", *TUTORIALS], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [ROOT / "README.md", *GUIDES, *TUTORIALS], ids=lambda page: page.stem)
 def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch, capsys):
     if page.stem == "engines":
         pytest.importorskip("mujoco")
