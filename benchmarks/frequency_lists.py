@@ -7,9 +7,11 @@ The steel cantilever and the paper's beam, recorded with Exudyn 1.13.6, MuJoCo 4
 the statuses of larger sets of lists than the tests have, every STEP-th of them, and prints lists that are surely wrong.
 """
 
+# mypy: disallow-untyped-calls=False
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from importlib import import_module
 from itertools import islice, product
 from math import pi
 from pathlib import Path
@@ -23,13 +25,20 @@ from tests.reference.discrete_beams import rigid_links, varying_beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed
 from verify.engines import ENGINES, chain_of
+from verify.engines.description import in_plane
 from verify.exact.closed_forms import frequency_hz
+from verify.fem_beam import HermiteModel
+from verify.options import Support, Theory
 from verify.problem.beam import Beam
+from verify.segment_model import SegmentModel
 
+PAIRS: tuple[tuple[Support, Support], ...]
+THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "rayleigh", "timoshenko")
 PAIRS = (("clamped", "free"), ("clamped", "clamped"), ("clamped", "pinned"), ("pinned", "pinned"))
 
 CANTILEVER = Beam(length=0.3, width=0.025, thickness=0.003, youngs_modulus=206e9, density=7850.0)
-PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+WIDTH, THICKNESS, MODULUS, DENSITY = 0.02, 0.001, 70e9, 2700.0
+PAPER = Beam(length=0.5, width=WIDTH, thickness=THICKNESS, youngs_modulus=MODULUS, density=DENSITY)
 
 
 def exudyn_cantilever(n: int, n_modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -45,7 +54,7 @@ def exudyn_cantilever(n: int, n_modes: int) -> tuple[np.ndarray, np.ndarray, np.
     bodies = [system.AddObject(items.ObjectRigidBody2D(nodeNumber=node, **body)) for node in nodes]
 
     def point(body: int, x: float) -> int:
-        return system.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=[x, 0.0, 0.0]))
+        return int(system.AddMarker(items.MarkerBodyPosition(bodyNumber=body, localPosition=[x, 0.0, 0.0])))
 
     fixed = system.AddNode(items.NodePointGround())
     turns = [system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=fixed, coordinate=0))]
@@ -66,13 +75,13 @@ def elastica_pinned(n: int, n_modes: int, poissons_ratio: float) -> np.ndarray:
 
     Its inner forces and couples under a small deflection of each node and turn of each element, in the plane x-z.
     """
-    from elastica.rod.cosserat_rod import CosseratRod
-
-    width, thickness, density, modulus = PAPER.width, PAPER.thickness, PAPER.density, PAPER.youngs_modulus
+    width, thickness, density, modulus = WIDTH, THICKNESS, DENSITY, MODULUS
     area, shear, link = width * thickness, modulus / (2.0 * (1.0 + poissons_ratio)), PAPER.length / n
     axes = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     stiffness = {"youngs_modulus": modulus, "shear_modulus": shear}
-    rod = CosseratRod.straight_rod(n, *axes, PAPER.length, np.sqrt(area / np.pi), density, **stiffness)
+    rod = import_module("elastica.rod.cosserat_rod").CosseratRod.straight_rod(
+        n, *axes, PAPER.length, np.sqrt(area / np.pi), density, **stiffness
+    )
     moments = np.array([thickness * width**3, width * thickness**3]) / 12.0
     moments = np.append(moments, moments.sum())
     rod.bend_matrix[:] = rod.shear_matrix[:] = rod.mass_second_moment_of_inertia[:] = 0.0
@@ -92,12 +101,12 @@ def elastica_pinned(n: int, n_modes: int, poissons_ratio: float) -> np.ndarray:
     free = [i for i in range(2 * n + 1) if i not in (0, n)]
     matrix = 0.5 * (matrix + matrix.T)[np.ix_(free, free)]
     mass = np.concatenate([rod.mass, rod.mass_second_moment_of_inertia[1, 1]])[free]
-    return np.sqrt(eigh(matrix, np.diag(mass), eigvals_only=True)[:n_modes]) / (2.0 * pi)
+    return np.asarray(np.sqrt(eigh(matrix, np.diag(mass), eigvals_only=True)[:n_modes]) / (2.0 * pi))
 
 
-def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str]]]:
+def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | None]]]:
     """(set, beam, Hz, digits, N, walls that may be identified) of lists whose origin is known."""
-    ends = "clamped", "free"
+    ends = PAIRS[0]
     thin = Beam(length=0.45, width=0.03, thickness=0.004, youngs_modulus=206e9, density=7850.0, supports=ends)
     ei, mass, length = thin.bending_stiffness, thin.mass_per_length, thin.length
     for h, nu, kappa, digits in product((0.01, 0.03, 0.06), (0.2, 0.25, 0.3, 0.35, 0.45), (5 / 6, pi**2 / 12), (5, 7)):
@@ -122,6 +131,16 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str]]]
     ):
         hertz = factor * rigid_links(thin, 20, wall)[:n]
         yield "wrong modulus", thin, hertz.tolist(), digits, count, {name}
+    sizes = product((1.2, 1.5, 3.3), (0.01, 0.1), PAIRS, THEORIES, (6, 9))
+    for ratio, thickness, pair, theory, n in sizes:
+        bar = Beam(length=1.0, width=ratio * thickness, thickness=thickness, youngs_modulus=68e9, density=2700.0,
+                   supports=pair)  # fmt: skip
+        planes = bar, in_plane(bar, "width")
+        both = np.ravel([HermiteModel(one, 20, theory=theory).modes(n).frequencies_hz for one in planes])
+        yield "both planes in rad/s", bar, (2.0 * pi * np.sort(both)[:n]).tolist(), 6, 20, {None}
+        if "clamped" in pair and theory == THEORIES[0]:
+            both = np.ravel([SegmentModel(one, 20, wall="full").modes(n).frequencies_hz for one in planes])
+            yield "both planes, EI/l at the wall", bar, np.sort(both)[:n].tolist(), 6, 20, {"full"}
 
 
 def judge(step: int) -> None:

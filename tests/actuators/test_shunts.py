@@ -17,7 +17,7 @@ FIFTH = ShuntedMode(coupling=0.2)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
 OMEGA, DISTANCE = 2.0 * np.pi * 4276.0, 0.0116
-SCENE = SimpleNamespace(beam=PAPER, drive=SimpleNamespace(frequency_hz=4276.0, actuator=STACK), devices=())
+SCENE = SimpleNamespace(beam=PAPER, drive=SimpleNamespace(frequency_hz=4276.0, actuator=STACK), beside="")
 
 
 def measured(name, **arguments):

@@ -95,6 +95,18 @@ def test_motions_of_a_bar_in_space_are_sorted_in_rad_per_second():
     assert [row["motion"] for row in table(result, "Other motions")] == [name for name in motions if name != "bending"]
 
 
+@pytest.mark.parametrize(("wall", "twist"), [("full", 654.0086), (None, 0.95 * 654.0086)])
+def test_motions_with_a_common_error_are_sorted(wall, twist):
+    """Links with EI/l at both planes' walls and a right torsion; all frequencies 5 % too low."""
+    planes = [rigid_links(one, 20, 1.0 if wall else 2.0)[:4] for one in (BAR, replace(BAR, width=0.1, thickness=0.15))]
+    hertz = np.sort([*(1.0 if wall else 0.95) * np.ravel(planes), twist])[:7]
+    result = compared(BAR, hertz, digits=6, count=20)
+    assert [row["motion"] for row in table(result, "Other motions")].count("bending, width") == 3
+    assert (result.data["best"]["wall"], result.data["best"]["fault"]["kind"]) == (
+        ("full", "none") if wall else ("half", "factor")
+    )
+
+
 def test_pairs_of_a_round_bar_and_six_rigid_motions():
     rod = Beam(length=1.0, shape="round", diameter=0.02, supports=("free", "free"), **STEEL)
     hertz = [0.0] * 6 + list(np.repeat(np.array([4.730040745, 7.853204624]) ** 2 * rod.wave_constant / (2 * pi), 2))
@@ -107,6 +119,20 @@ def test_pairs_of_a_round_bar_and_six_rigid_motions():
 def test_squares_and_periods_are_recognised(unit, values):
     data = compared(CLAMPED, values(euler(CLAMPED)), digits=7).data
     assert (data["unit"], data["passed"]) == (unit, True)
+
+
+def test_rigid_motions_of_squares_are_rounding_errors_in_any_order():
+    plane = euler(BAR, [4.730040745, 7.853204624, 10.995607838])
+    squares = (2 * pi * np.sort([*plane, *1.5 * plane])) ** 2
+    noise = [-1e-3, 2e-3, -4e-4, 1e-3, 3e-3, 5e-3]
+    data = compared(replace(BAR, supports=("free", "free")), [*noise, *squares], digits=7, count=20).data
+    assert (data["unit"], data["passed"]) == ("rad2/s2", True)
+
+
+def test_a_factor_that_is_not_likelier_but_agrees_is_of_too_few_frequencies():
+    """Elsewhere the nearest differ by 1e-3, here all four digits agree."""
+    data = compared(CLAMPED, 0.976 * rigid_links(CLAMPED, 20)[:5], digits=4).data
+    assert (data["status"], data["best"]["wall"], data["best"]["fault"]["kind"]) == ("few", "half", "factor")
 
 
 FACTORS = {"sqrt(g)": sqrt(9.80665), "plane strain": 1 / sqrt(1 - 0.33**2), "exchanged": 0.03 / 0.004}

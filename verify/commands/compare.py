@@ -11,7 +11,7 @@ from verify.options import THEORIES
 UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
 """As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
-"""Suffixes of lists of frequencies; other files are meshes."""
+"""Suffixes of lists of frequencies, in addition to those that are of no mesh."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -23,7 +23,9 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 )
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
-@click.option("--unit", type=click.Choice(UNITS), help="Of the list. Default: its header's, else Hz.")
+@click.option(
+    "--unit", type=click.Choice(UNITS), help="Of the list. Default: its header's, else the one that fits the beam."
+)
 @click.option("--kind", type=click.Choice(["segments", "elements"]), help="Candidates of one kind only.")
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
@@ -63,6 +65,7 @@ def compare(
     from verify.compare.reading import read_frequencies, read_shapes, read_words, solve_model
     from verify.convert import typed
     from verify.errors import InputError
+    from verify.io.mode_files import is_mesh
     from verify.scene.load import load_scene
     from verify.validation import Relative
 
@@ -83,7 +86,7 @@ def compare(
         frequencies = typed_list
     elif len(given) > 1:
         raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
-    elif Path(given[0]).suffix.lower() in TEXT:
+    elif (suffix := Path(given[0]).suffix.lower()) in TEXT or not is_mesh(suffix):
         frequencies = read_frequencies(Path(given[0]), unit)
     else:
         frequencies = None

@@ -84,18 +84,6 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         chain = self.mass == "links" and self.wall in (None, *WALLS) and self.joints not in STEPS
         return not self.sized or self.mass == "consistent" or chain
 
-    @property
-    def springs(self) -> bool:
-        """Whether a rotational spring may replace the wall."""
-        return self.packaged and self.attachment == "reciprocal" and self.wall != "welded"
-
-    @property
-    def settings(self) -> dict[str, str]:
-        """Keywords of the `verify` model."""
-        settings = {"wall": self.wall, "joints": self.joints, "attachment": self.attachment, "theory": self.theory}
-        usual = ("series", "reciprocal", EULER)
-        return {name: value for name, value in settings.items() if value is not None and value not in usual}
-
     def order(self, beam: Beam) -> int | None:
         """Order of convergence of the frequencies for a beam; None if unknown."""
         if not self.sized:
@@ -150,14 +138,14 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
 @lru_cache(maxsize=20_000)
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
     """First elastic frequencies of a candidate, (n_modes or fewer,), Hz; cached, read-only. Raises InputError."""
-    settings = candidate.settings
     if candidate.packaged:
-        model = MODELS[candidate.model]
-        if count is not None:
-            n_modes = min(n_modes, model.build(beam, count, **settings).n_elastic if count >= model.fewest else 0)
-        if n_modes < 1:
+        rules = {name: getattr(candidate, name) for name in ("wall", "joints", "attachment", "theory")}
+        rules = {name: rule for name, rule in rules.items() if rule not in (None, "series", "reciprocal", EULER)}
+        if count is not None and count < MODELS[candidate.model].fewest:
             return np.empty(0)
-        return np.asarray(model.build(beam, count, **settings).modes(n_modes).frequencies_hz)
+        model = MODELS[candidate.model].build(beam, count, **rules)
+        n_modes = n_modes if count is None else min(n_modes, model.n_elastic)
+        return np.asarray(model.modes(n_modes).frequencies_hz) if n_modes > 0 else np.empty(0)
     line, wall = DiscreteBeam(beam, count or 0, candidate.theory, candidate.joints), candidate.wall or "half"
     if candidate.model == ELEMENTS:
         return line.elements_hz(n_modes, candidate.mass)

@@ -1,6 +1,5 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
-from bisect import bisect_left
 from collections.abc import Callable
 from itertools import product
 from typing import Any, get_args
@@ -11,10 +10,10 @@ import numpy as np
 from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
-from verify.compare.fit import Data, identify, spectrum
+from verify.compare.fit import Data, Identification, identify, spectrum
 from verify.compare.reading import FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
-from verify.compare.sorting import BENDING, rigid_of, sort_list
+from verify.compare.sorting import BENDING, Sorted, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.options import Support
@@ -55,42 +54,24 @@ def compare(
 
     `shapes`, one per frequency, identify the modes. `data["passed"]` of the result is the acceptance.
     """
-    beam, options, motions, read = scene.beam, options or Options(), None, listed
+    beam, options, read = scene.beam, options or Options(), listed
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_integer(field, getattr(options, field), 1)
-    if shapes is not None and len(shapes.values) != len(listed.values):
-        raise InputError(f"modes = {len(shapes.values)} shapes for {len(listed.values)} frequencies: give one for each")
-    if shapes is None:
-        listed, motions = sort_list(beam, listed)
-        if (np.diff(listed.hertz) < 0.0).any():
-            raise InputError(f"{listed.source}: frequencies do not ascend: sort them, or give the shapes of the modes")
-    hertz = listed.hertz
-    rigid, n = rigid_of(beam, hertz), max(len(hertz), *(listed.numbers or (0,))) + SPARE
-    if not hertz[rigid:].all():
-        raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
-    exact_hz = frequencies_hz(Candidate(model=EXACT, theory=options.theory), beam, None, n)
-    modes = np.arange(len(hertz) - rigid)
-    entries = rigid + modes
-    likeness, ordered = None, shapes is None and motions is None
-    if shapes is not None:
-        paired, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
-        like = macs >= LEAST_MAC
-        entries, modes, likeness = entries[like], paired[like], macs[like]
-    elif motions is not None:
-        bending = np.array(motions.names) == BENDING
-        entries, modes = entries[bending], motions.modes[bending]
-    elif listed.numbers is not None:
-        modes = np.array(listed.numbers)[rigid:] - 1 - (rigid if listed.numbers[0] == 1 else 0)
-        ordered = bool((modes == entries - rigid).all())
+    known = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
+    listed, rigid, macs, hertz = known.listed, known.rigid, known.macs, known.listed.hertz
+    bending = np.array(known.motions) == BENDING
+    entries, modes = known.entries[bending], known.modes[bending]
+    ordered = macs is None and bool(bending.all()) and bool((modes == entries - rigid).all())
     logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
     data = Data(beam=beam, logs=logs, rounding=rounding, members=members, entries=entries, modes=modes,
                 ordered=ordered, count=options.count)  # fmt: skip
     fits = identify(data, progress)
-    each = zip(entries.tolist(), modes.tolist(), [None] * len(modes) if likeness is None else likeness, strict=True)
-    rows = [Entry(e + 1, m + 1, float(hertz[e]), float(exact_hz[m]), mac) for e, m, mac in each]
+    columns = [(known.entries + 1).tolist(), (known.modes + 1).tolist(), hertz[known.entries].tolist()]
+    columns += [known.exact.tolist(), [None] * len(bending) if macs is None else macs.tolist(), known.motions]
+    rows = [Entry(*cells) for cells in zip(*columns, strict=True)]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
-    unlike = 0 if likeness is None else len(hertz) - rigid - int((likeness >= LOW_MAC).sum())
+    unlike = 0 if macs is None else len(hertz) - rigid - int((macs >= LOW_MAC).sum())
     supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
     own = beam.rigid_motions  # in space and along the axis there are more
     messages = {
@@ -102,21 +83,21 @@ def compare(
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
-    mode = options.mode or int(modes.max()) + 1
-    rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
-    joints = "tensioned" if beam.tension else "series"
-    sized = [
-        *([fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []),
-        *(Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=options.theory) for rule in rules),
-        Candidate(model=ELEMENTS, mass="consistent", theory=options.theory),
-    ]
-    required = [(one, mode, *_required(beam, one, mode, max(mode, data.n_modes))) for one in dict.fromkeys(sized)]
-    if motions is not None:  # the other motions of a model in space
-        exact = motions.exact[:, int(options.theory == "timoshenko")].tolist()
-        others = zip(hertz[rigid:].tolist(), exact, motions.modes.tolist(), motions.names, strict=True)
-        all_rows = [Entry(i, m + 1, f, of, None, name) for i, (f, of, m, name) in enumerate(others, rigid + 1)]
-        rows += [row for row in all_rows if row.motion != BENDING]
-    return result_of(scene.name, listed, data, fits, rows, required, warnings, options)
+    return result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
+
+
+def _by_shape(beam: Beam, listed: FrequencyList, shapes: ModeShapes, theory: str) -> Sorted:
+    """The entries that are modes by their shapes. Raises InputError."""
+    if len(shapes.values) != len(listed.values):
+        raise InputError(f"modes = {len(shapes.values)} shapes for {len(listed.values)} frequencies: give one for each")
+    rigid = rigid_of(beam, listed.hertz)
+    if not listed.hertz[rigid:].all():
+        raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
+    modes, macs = pair_shapes(beam, shapes.x, shapes.values[rigid:])
+    like = macs >= LEAST_MAC
+    modes, entries = modes[like], rigid + np.flatnonzero(like)
+    exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(modes.max()) + 1)[modes]
+    return Sorted(listed, rigid, entries, (BENDING,) * len(modes), modes, exact, macs[like])
 
 
 def pair_shapes(beam: Beam, x: Array, values: Array) -> tuple[Indices, Array]:
@@ -152,26 +133,36 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
     return ()
 
 
-def _required(beam: Beam, candidate: Candidate, mode: int, n_modes: int) -> tuple[int | None, ...]:
-    """Required N of a mode for each of ERRORS, by interpolation and bisection; None beyond LARGEST."""
-    exact = float(frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1])
-    sizes, logs = spectrum(beam, candidate, n_modes)
-    counts: list[int | None] = []
-    for error in ERRORS:
+def _required(data: Data, fits: Identification, options: Options) -> list[tuple[Any, ...]]:
+    """(candidate, mode, N for each of ERRORS or None beyond LARGEST) of the best and the usual candidates."""
+    beam, theory, mode = data.beam, options.theory, options.mode or int(data.modes.max()) + 1
+    rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
+    joints = "tensioned" if beam.tension else "series"
+    sized = [
+        *([fits.best.candidate] if fits.status != "unknown" and fits.best.candidate.sized else []),
+        *(Candidate(model=CHAIN, mass="links", wall=rule, joints=joints, theory=theory) for rule in rules),
+        Candidate(model=ELEMENTS, mass="consistent", theory=theory),
+    ]
+    n_modes = max(mode, data.n_modes)
 
-        def within(size: int, error: float = error) -> bool:
-            hertz = frequencies_hz(candidate, beam, size, n_modes)
-            return len(hertz) >= mode and abs(float(hertz[mode - 1]) / exact - 1.0) <= error
+    def error(candidate: Candidate, size: int) -> float:
+        hertz = frequencies_hz(candidate, beam, size, n_modes)
+        exact = frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1]
+        return abs(float(hertz[mode - 1]) / float(exact) - 1.0) if len(hertz) >= mode else np.inf
 
-        failing = np.flatnonzero(~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= error))
-        if len(failing) and sizes[failing[-1]] == sizes[-1]:
-            counts.append(None)
-            continue
-        low = high = int(sizes[failing[-1]]) + 1 if len(failing) else int(sizes[0])
-        step = 1
-        while not within(high):
-            low, high, step = high, high + step, 2 * step
-        while low > 0 and within(low):
-            low, high, step = max(low - step, 0), low, 2 * step
-        counts.append(low + 1 + bisect_left(range(low + 1, high), True, key=within))
-    return tuple(counts)
+    rows: list[tuple[Any, ...]] = []
+    for one in dict.fromkeys(sized):
+        exact = frequencies_hz(Candidate(model=EXACT, theory=one.theory), beam, None, mode)[-1]
+        sizes, logs = spectrum(beam, one, n_modes)
+        counts: list[int | None] = []
+        for limit in ERRORS:  # from the interpolated N to the one that is solved
+            failing = sizes[~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= limit)]
+            count = int(failing[-1]) + 1 if len(failing) else int(sizes[0])
+            if count <= sizes[-1]:
+                while error(one, count) > limit:
+                    count += 1
+                while count > 1 and error(one, count - 1) <= limit:
+                    count -= 1
+            counts.append(count if count <= sizes[-1] else None)
+        rows.append((one, mode, *counts))
+    return rows

@@ -59,12 +59,6 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
     decimals: int = 0
     beam: Beam | None = None
 
-    def applies(self, candidate: Candidate) -> bool:
-        """Whether it is tested with a candidate."""
-        if theory := {"shear": "timoshenko", "constants": EULER}.get(self.kind):
-            return not candidate.sized and candidate.theory == theory
-        return candidate.springs or not self.ends
-
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
@@ -133,10 +127,6 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether all differences are within the digits; the last digit may be off by one."""
         return bool((abs(np.log1p(fit.differences)) <= AGREED + 1.5 * self.rounding[fit.fault.entries]).all())
 
-    def near(self, fit: Fit, best: Fit) -> bool:
-        """Whether a fit is within the factor of ambiguity of the best."""
-        return hypot(fit.rms, self.floor) <= AMBIGUOUS * hypot(best.rms, self.floor)
-
 
 class Identification(msgspec.Struct, frozen=True, eq=False):
     """Result of an identification; `status`: identified, ambiguous, exact (no discretisation), few or unknown.
@@ -171,25 +161,28 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
             progress(f"fault of the list: {FAULTS[kind][0].partition(',')[0]}")
             tested[kind] = _best(data, [one for one in faults if one.kind == kind])
     firsts = [fits[0] for fits in tested.values() if fits]
-    accepted = [one for one in firsts if data.accepts(one) and data.score(one) <= data.score(plain)]
-    best = min(accepted or [plain], key=data.score)
+    accepted = [*filter(data.accepts, firsts)]
+    likely = [one for one in accepted if data.score(one) <= data.score(plain)]
+    exact = [one for fits in tested.values() for one in fits if not one.candidate.sized and one.fault.kind in EXACTS]
+    unlikely = [] if any(map(data.agrees, exact)) else accepted  # an unlikely fault agrees, but is no claim
+    best = min(likely or unlikely or [plain], key=data.score)
     ranking = _best(data, [best.fault], every=True)
     if data.count is not None and not any(one.candidate.sized for one in ranking):
         raise InputError(f"count = {data.count}: no model has {data.n_modes - 1} modes, raise count")
     best = ranking[0]
     every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
-    near = [one for one in every if data.near(one, best) and data.agrees(one)]
+    most = AMBIGUOUS * hypot(best.rms, data.floor)
+    near = [one for one in every if hypot(one.rms, data.floor) <= most and data.agrees(one)]
     exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
     if exact:
         best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
         ranking = [best, *(one for one in ranking if one is not best)]
     equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
-    most = data.fitted(best) + 1
-    close = [one for one in near if one is not best and one not in equal and data.fitted(one) <= most]
+    close = [o for o in near if o is not best and o not in equal and data.fitted(o) <= data.fitted(best) + 1]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
     close = sorted(filter(data.accepts, close), key=data.score)
-    status = "exact" if exact else "ambiguous" if close else "identified"
+    status = "exact" if exact else "few" if not likely else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
     firsts.sort(key=data.score)
@@ -241,14 +234,10 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
     if every:
         solved = {one.candidate for one in refined}
         refined = rank([*refined, *(_solved(data, one, one.count) for one in scanned if one.candidate not in solved)])
-    by = {
-        one.candidate: one for one in refined
-    }  # joint rules at steps that agree with half links in series are left out
-    refined = [
-        one
-        for one in refined
-        if not _same(one, twin := by.get(replace(one.candidate, joints="series"), one)) or one is twin
-    ]
+    by = {one.candidate: one for one in refined}
+    twins = [(one, by.get(replace(one.candidate, joints="series"), one)) for one in refined]
+    # joint rules at steps that agree with half links in series are left out
+    refined = [one for one, twin in twins if one is twin or not _same(one, twin)]
     equal = {one.candidate for one in refined if _same(one, refined[0])}  # of these the one with least fitted
     return sorted(refined, key=lambda f: (data.fitted(f), order[f.candidate]) if f.candidate in equal else (9, 0))
 
@@ -277,7 +266,9 @@ def _by_hand(data: Data, fault: Fault) -> Array:
 
 def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[int | None] = ()) -> Fit | None:
     """The fit at the best of `counts` (default: interpolated N); None if the fault does not apply."""
-    if not fault.applies(candidate):
+    theory = {"shear": "timoshenko", "constants": EULER}.get(fault.kind)
+    springs = candidate.packaged and candidate.attachment == "reciprocal" and candidate.wall != "welded"
+    if (fault.ends and not springs) or (theory and (candidate.sized or candidate.theory != theory)):
         return None
     beam = fault.beam or data.beam
     if not candidate.sized:
@@ -289,8 +280,8 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[in
         table = np.array([_logs(beam, candidate, size, data.n_modes) for size in counts])
     else:
         sizes, table = spectrum(beam, candidate, data.n_modes)
-        counts, table = sizes[sizes <= SEARCHED].tolist(), table[sizes <= SEARCHED]
-    raw = data.logs[fault.entries] - table[:, fault.modes]
+        counts = sizes[sizes <= SEARCHED].tolist()
+    raw = data.logs[fault.entries] - table[: len(counts), fault.modes]
     parameters, removed = np.ones(len(raw)), np.zeros_like(raw)
     if fault.ends or fault.kind == "shear":
         try:

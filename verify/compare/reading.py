@@ -82,7 +82,7 @@ def listed(source: str, values: Sequence[float], cells: Sequence[str] = (), **mo
     if not 0 < len(values) <= MOST:
         raise InputError(f"{source} has {len(values)} frequencies: give 1 to {MOST}")
     array = np.array(values, dtype=float)
-    if more.get("unit") == "rad2/s2":  # rigid motions may have small negative ones
+    if UNITS[more.get("unit", "Hz")][1] > 0:  # rigid motions may have small negative values
         array = np.where(abs(array) < 1e-6 * abs(array).max(), abs(array), array)
     for i, value in enumerate(array.tolist(), start=1):
         if not isfinite(value) or value < 0.0 or (value == 0.0 and more.get("unit") in ("s", "ms")):
@@ -104,19 +104,19 @@ def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList |
     if len(words) == 1 and re.fullmatch(r"\d+,\d+", words[0]):
         raise InputError(f"frequencies = {words[0]}: a decimal comma or two values, write a point or a space")
     if not all(_VALUE.fullmatch(cell) for cell in cells):
-        cells = [cell for word in words for cell in re.split(r"[,;\s]+", word.strip("[]()")) if cell]
+        cells = [cell for word in words for cell in re.split(r"[;\s]+", word.strip("[]()")) if cell]
+        decimal = len(cells) > 1 and all(re.fullmatch(r"\d+,\d+", cell) for cell in cells)
+        cells = [one for cell in cells for one in ([cell.replace(",", ".")] if decimal else cell.split(",")) if one]
     found = [_VALUE.fullmatch(cell) for cell in cells]
     if not cells or not all(found):
         return None
     units = {one[2] for one in found if one and one[2]}
     known = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
     if units and known is None:
-        raise InputError(
-            f"frequencies = {shown(' '.join(words))}: units {', '.join(sorted(units))}, give one of --unit"
-        )
-    numbers = [one[1] for one in found if one]
-    chosen = unit or known
-    values = [float(re.sub("[dD]", "e", number)) for number in numbers]
+        text = f"{shown(' '.join(words))}: units {', '.join(sorted(units))}"
+        raise InputError(f"frequencies = {text}, give one of --unit")
+    numbers, chosen = [one[1] for one in found if one], unit or known
+    values = _numbers(numbers, "frequencies")
     return listed("frequencies", values, numbers, unit=chosen or "Hz", declared=chosen is not None)
 
 
@@ -130,7 +130,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     source = f"frequencies file {str(path)!r}"
     text = _text(path, source)
     if cells := _solver_cells(text):
-        return listed(source, [_float(cell, source, i) for i, cell in enumerate(cells, 1)], cells, declared=True)
+        return listed(source, _numbers(cells, source), cells, declared=True)
     lines = [line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#%!"]
     if brackets := re.match(r"\s*(?:\w+\s*=\s*)?(?:(?:np\.)?array\()?[\[(](.*)[\])]", text, re.DOTALL):
         lines = re.sub(r"np\.float64\(|[()\[\]]", " ", brackets[1]).replace(",", " ").split()
@@ -140,7 +140,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     if (brackets or named) and (read := read_words(lines, unit)):
         return msgspec.structs.replace(read, source=source)
     head, rows = _rows(text, source)
-    table = np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
+    table = np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
     numbered = next((k for k, name in enumerate(head) if _MODE.fullmatch(name)), None)
     if not head and table.shape[1] == 2 and not (table[:, 0] % 1.0).any() and (np.diff(table[:, 0]) > 0.0).all():
         numbered = 0
@@ -152,36 +152,35 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     if len(columns) != 1:
         raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
     column, numbers = columns[0], None
+    chosen = unit or units.get(column)
     if numbered is not None:
         order = table[:, numbered]
         if (order % 1.0).any() or not (np.diff(order) > 0.0).all() or not 0 <= order[0] <= order[-1] <= MOST:
             raise InputError(f"{source}: mode numbers {order[:5].tolist()} do not count upwards: number them from 1")
         numbers = tuple(int(number) + (order[0] == 0) for number in order)
-    cells, chosen = [row[column] for row in rows], unit or units.get(column)
     more = {"unit": chosen or "Hz", "declared": chosen is not None, "numbers": numbers}
-    return listed(source, table[:, column].tolist(), cells, **more)
+    return listed(source, table[:, column].tolist(), [row[column] for row in rows], **more)
 
 
 def _solver_cells(text: str) -> list[str]:
     """Frequencies in Hz as text from a solver's table: a mode number, then among others omega^2, omega, omega / 2 pi.
 
-    So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. Empty without such a table.
+    So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. The first table, empty without one.
     """
-    cells: list[str] = []
+    runs: list[list[str]] = [[]]
     for line in text.splitlines():
         words = list(takewhile(_NUMBER.fullmatch, line.split()))
-        values = [abs(float(re.sub("[dD]", "e", word.replace(",", ".")))) for word in words]
+        values = [abs(value) for value in _numbers(words, "")]
         for k in range(1, min(len(values) - 2, 4)):
             square, omega, hertz = values[k : k + 3]
-            if abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega:
-                if values[0] != len(cells) + 1:  # another step
-                    return cells
-                cells.append(words[k + 2].lstrip("-"))
+            fits = abs(square - omega**2) <= 1e-3 * square and abs(omega - 2.0 * pi * hertz) <= 1e-3 * omega
+            if fits or omega == hertz == 0.0:  # zeros of rigid motions, or of coordinates in a table of nodes
+                if values[0] == 1.0:
+                    runs.append([])
+                if values[0] == len(runs[-1]) + 1:
+                    runs[-1].append(words[k + 2].lstrip("-"))
                 break
-            if square < 1e-3 and omega == hertz == 0.0 and values[0] == len(cells) + 1:  # a rigid motion
-                cells.append("0.0")
-                break
-    return cells if len(cells) > 1 else []
+    return next((run for run in runs if any(_numbers(run, ""))), [])
 
 
 def read_shapes(path: Path, length: float) -> ModeShapes:
@@ -215,7 +214,7 @@ def read_series(path: Path) -> tuple[Array, Array, Array | None]:
 def _table(path: Path, source: str) -> tuple[list[str], Array]:
     """(header or empty, numbers (n, k)) of a text file. Raises InputError."""
     head, rows = _rows(_text(path, source), source)
-    return head, np.array([[_float(cell, source, i) for cell in row] for i, row in enumerate(rows, start=1)])
+    return head, np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
 
 
 def checked_shapes(shapes: ModeShapes, length: float, source: str) -> ModeShapes:
@@ -272,14 +271,14 @@ def _rows(text: str, source: str) -> tuple[list[str], list[list[str]]]:
     rows, head = _cells([line for line in lines if line[0] not in "#%!"]), _cells(comments[-1:])
     if rows and not any(_NUMBER.fullmatch(cell) for cell in rows[0]):
         head, rows = rows[:1], rows[1:]
-    if not rows or min(map(len, rows)) != max(map(len, rows)):
-        widths = [len(row) for row in rows]
-        odd = next((i for i, width in enumerate(widths) if width != max(widths, key=widths.count)), None)
-        if odd is None:
-            raise InputError(f"{source} has 0 rows of numbers: give one or more")
-        text = shown(" ".join(rows[odd]))
-        raise InputError(f"{source}, row {odd + 1} has other columns than most of the rows, cut it: {text}")
-    words, width = (head[0] if head else []), len(rows[0])
+    if not rows:
+        raise InputError(f"{source} has 0 rows of numbers: give one or more")
+    width = max(widths := [len(row) for row in rows], key=widths.count)
+    for i, row in enumerate(rows, start=1):
+        if len(row) != width:
+            text = shown(" ".join(row))
+            raise InputError(f"{source}, row {i} has other columns than most of the rows, cut it: {text}")
+    words = head[0] if head else []
     if len(words) != width:  # a header of words between spaces
         words = ["mode", " ".join(words)][-width:] if words and width <= 2 else []
     return words, rows
@@ -295,12 +294,13 @@ def _cells(lines: list[str]) -> list[list[str]]:
     return [[cell.replace(",", ".") if _NUMBER.fullmatch(cell) else cell for cell in row] for row in rows]
 
 
-def _float(cell: str, source: str, row: int) -> float:
-    """A number in Fortran's or C's notation. Raises InputError."""
-    try:
-        return float(re.sub("[dD]", "e", cell))
-    except ValueError:
-        raise InputError(f"{source}, row {row}: {shown(cell)} is not a number: correct it or leave it out") from None
+def _numbers(cells: Sequence[str], source: str, row: int | None = None) -> list[float]:
+    """Numbers in Fortran's or C's notation, one for each row from 1, or all of `row`. Raises InputError."""
+    for i, cell in enumerate(cells, start=1):
+        if not _NUMBER.fullmatch(cell):
+            text = f"row {row or i}: {shown(cell)} is not a number"
+            raise InputError(f"{source}, {text}: correct it or leave it out")
+    return [float(re.sub("[dD]", "e", cell.replace(",", "."))) for cell in cells]
 
 
 def _last_digit(cell: str, value: float, most: int) -> float:

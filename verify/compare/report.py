@@ -33,7 +33,7 @@ POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
-INCH, GRAVITY = 0.0254, 9.80665
+GRAVITY = 9.80665
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
 RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
@@ -69,8 +69,9 @@ def result_of(
     `required`: candidates, modes, and N for 1 % and 0.1 %. `options`: `compare.Options`.
     """
     best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
-    misread = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * (kind in ("missing", "extra"))
-    faults = [*misread, *warnings]
+    claimed = fits.status in ("identified", "ambiguous")
+    misread = claimed and kind in ("missing", "extra")
+    faults = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * misread + warnings
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
     off, passed = abs(worst.error), abs(worst.error) <= within and not faults
@@ -87,7 +88,6 @@ def result_of(
         summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    claimed = fits.status in ("identified", "ambiguous")
     if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
@@ -160,34 +160,26 @@ def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[
     """Modes, other motions, candidates, faults, parameters, required N."""
     best, sizes = fits.best, [Column("candidate"), Column("N")]
     tables = [_modes(best, [row for row in rows if row.motion == BENDING])]
-    lines: list[Any] = [
-        (one.entry, one.motion, one.mode, one.listed_hz, one.exact_hz, one.error)
-        for one in rows
-        if one.motion != BENDING
-    ]
-    if lines:
+    lines: list[Any] = [(one.entry, one.motion, one.mode, one.listed_hz, one.exact_hz, one.error) for one in rows]
+    if lines := [line for line in lines if line[1] != BENDING]:
         columns = [ENTRY[0], Column("motion"), *ENTRY[1:], Column("error", format=".4g", percent=True)]
         tables.append(Table("Other motions", columns, lines))
     words = {id(one): "equivalent" for one in fits.equivalent} | {id(one): "alternative" for one in fits.alternatives}
     words[id(best)] = "nearest" if fits.status in ("few", "unknown") else "best"
-    lines = [
-        (one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
-        for one in fits.ranking[:SHOWN]
-    ]
+    lines = [(one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
+             for one in fits.ranking[:SHOWN]]  # fmt: skip
     notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: agrees as well."]
     tables.append(Table("Candidates", [*sizes, Column("order"), *RMS, Column("status")], lines, notes))
     if fits.status == "unknown" or any(one.fault.kind != "none" for one in (best, *fits.alternatives)):
-        lines = [
-            (FAULTS[one.fault.kind][0], value(one, beam), one.candidate.label, one.count, one.rms, one.largest)
-            for one in fits.tested
-        ]
+        lines = [(FAULTS[one.fault.kind][0], value(one, beam), one.candidate.label, one.count, one.rms, one.largest)
+                 for one in fits.tested]  # fmt: skip
         columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
     if best.fault.kind == "factor":
         held = bool(beam.spring or beam.foundation or beam.tension)
         bare = best.candidate.theory == EULER and not (held or beam.mass)
-        kept = {"E": not held, "rho": not beam.mass}
-        lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if kept.get(name, bare)]
+        alone = {"E": not held, "rho": not beam.mass}
+        lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if alone.get(name, bare)]
         columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
         tables.append(Table("Parameters that alone explain the factor", columns, lines))
     columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
@@ -200,17 +192,6 @@ def _title(fit: Fit, beam: Beam) -> str:
     size = f", N = {fit.count}" if fit.count and fit.fault.kind != "count" else ""
     fault = "" if fit.fault.kind == "none" else f" with {FAULTS[fit.fault.kind][0]} {value(fit, beam)}"
     return f"{fit.candidate.label}{size}{fault}"
-
-
-def named_factors(beam: Beam) -> dict[str, float]:
-    """Common factors of the frequencies by mistakes that have a name."""
-    root = GRAVITY**0.5
-    factors = {"weight for mass, 1/sqrt(g)": 1.0 / root, "mass for weight, sqrt(g)": root}
-    factors |= {"metres for inches": INCH, "inches for metres": 1.0 / INCH}
-    factors["plane strain, 1/sqrt(1 - nu^2)"] = (1.0 - beam.poissons_ratio**2) ** -0.5
-    if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
-        factors["width and thickness exchanged"] = beam.width / beam.thickness
-    return factors
 
 
 def _modes(best: Fit, rows: list[Entry]) -> Table:
@@ -238,8 +219,13 @@ def value(fit: Fit, beam: Beam) -> str:
         return f"N = {fit.count}"
     words = [f"{fit.parameter:.6g}"] * (kind in ("factor", "shear", "clamp")) + [fit.fault.label]
     if kind == "factor":
-        near = max(fit.rms, fit.digits, 1e-5)
-        names = [name for name, one in named_factors(beam).items() if abs(fit.parameter / one - 1.0) < near]
+        root, near = GRAVITY**0.5, max(fit.rms, fit.digits, 1e-5)
+        factors = {"weight for mass, 1/sqrt(g)": 1.0 / root, "mass for weight, sqrt(g)": root}
+        factors |= {"metres for inches": 0.0254, "inches for metres": 1.0 / 0.0254}
+        factors["plane strain, 1/sqrt(1 - nu^2)"] = (1.0 - beam.poissons_ratio**2) ** -0.5
+        if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
+            factors["width and thickness exchanged"] = beam.width / beam.thickness
+        names = [name for name, one in factors.items() if abs(fit.parameter / one - 1.0) < near]
         words += [f"({' or '.join(names)})"] * bool(names)
     return " ".join(word for word in words if word)
 

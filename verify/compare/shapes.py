@@ -24,8 +24,7 @@ from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
-UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}
-"""Number of length units per metre."""
+UNITS = {"m": 1.0, "mm": 1e3, "cm": 1e2, "inch": 39.37007874}  # length units per metre
 SAME = 1e-6
 """Distance along the beam, relative to its length, of points in one cross-section."""
 SLENDER, ACROSS, LENGTH = 0.5, 0.5, 1e-3
@@ -34,9 +33,6 @@ _RADIANS = re.compile(r"rad|omega", re.IGNORECASE)
 _FREQUENCY = re.compile(r"hz|hertz|freq|rad|omega", re.IGNORECASE)
 STRAIGHT, TURNED = 1e-6, 0.1
 """Largest nonlinear fraction of a rigid-body motion; gain in mean MAC that identifies a reversed beam."""
-UNLIKE = f"A shape has a MAC below {LOW_MAC} with all modes of the beam: check beam.supports."
-DISORDER = "The shapes are not in the order of the modes."
-COARSE = "The mesh has fewer than two cross-sections per half wave: higher modes are aliased."
 
 
 class MeshShapes(msgspec.Struct, frozen=True, eq=False):
@@ -114,7 +110,9 @@ def _frequencies(field: dict[str, Any], chosen: list[bool], source: str) -> Freq
         if len(values) != len(chosen):
             raise InputError(f"{source}: {name!r} has {len(values)} values, {len(chosen)} shapes: give one for each")
         unit = "rad/s" if _RADIANS.search(name) else "Hz"
-        return listed(source, values[chosen].tolist(), unit=unit, declared=True)
+        read = listed(source, values[chosen].tolist(), unit=unit, declared=True)
+        coarse = 0.5 * float(field.get("resolution", [0.0])[0]) / read.values  # a peak lies between two spectral lines
+        return msgspec.structs.replace(read, digits=np.maximum(read.digits, coarse))
     return None
 
 
@@ -124,9 +122,8 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     Raises InputError. `data["passed"]` says whether every shape is a mode's, in order, and the frequencies pass.
     """
     beam, options, x, values = scene.beam, options or Options(), mesh.shapes.x, mesh.shapes.values
-    line = np.stack([np.ones_like(x), x])
-    rest = values - np.linalg.lstsq(line.T, values.T, rcond=None)[0].T @ line
-    bent = np.flatnonzero(np.linalg.norm(rest, axis=1) > STRAIGHT * np.linalg.norm(values, axis=1))
+    rest = np.sqrt(np.polyfit(x, values.T, 1, full=True)[1])
+    bent = np.flatnonzero(rest > STRAIGHT * np.linalg.norm(values, axis=1))
     if not len(bent):
         raise InputError(f"{mesh.source} has rigid-body motions only: write elastic modes")
     values, names = values[bent], [mesh.names[i] for i in bent]
@@ -136,16 +133,19 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     if other[1].mean() > mac.mean() + TURNED:
         x, values, (modes, mac) = beam.length - x[::-1], values[:, ::-1], other
         notes.append("x runs from right to left in the mesh.")
-    weights, n = np.sqrt(node_weights(x)), int(modes.max()) + 1
-    exact = exact_shapes(beam, n, x)
-    errors = [scale_free_error(s * weights, exact[mode] * weights) for s, mode in zip(values, modes, strict=True)]
+    n = int(modes.max()) + 1
+    errors = shape_errors(values, exact_shapes(beam, n, x)[modes], x)
     order = np.argsort(modes, kind="stable")
-    rows = [(names[i], int(modes[i]) + 1, float(mac[i]), errors[i]) for i in order]
+    rows = [(names[i], int(modes[i]) + 1, float(mac[i]), float(errors[i])) for i in order]
     error = Column("shape error", format=".3g", percent=True)
     tables = [Table("Shapes", [Column("shape"), Column("mode"), Column("MAC", format=".6f"), error], rows, notes)]
-    faults = {UNLIKE: (mac < LOW_MAC).any(), DISORDER: (np.diff(modes) < 0).any(), COARSE: len(x) - 1 < 2 * n}
-    warnings = [words for words, holds in faults.items() if holds]
-    listed = None
+    faults: dict[str, Any] = {
+        f"A shape has a MAC below {LOW_MAC} with all modes of the beam: check beam.supports.": (mac < LOW_MAC).any(),
+        "The shapes are not in the order of the modes.": (np.diff(modes) < 0).any(),
+    }
+    passed = not any(faults.values())
+    faults["The mesh has fewer than two cross-sections per half wave: higher modes are aliased."] = len(x) - 1 < 2 * n
+    warnings, listed = [text for text, holds in faults.items() if holds], None
     if mesh.frequencies is not None:
         own = mesh.frequencies
         frequencies = msgspec.structs.replace(own, values=own.values[bent], digits=own.digits[bent])
@@ -153,7 +153,6 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     known = None if listed is None else listed.data["best"]["count"]
     near = _nearest(beam, x, values, modes, options.count or known or len(x) - 1)
     tables.append(Table("Models by shape error", [Column("model"), Column("N"), error], near))
-    passed = not (faults[UNLIKE] or faults[DISORDER])
     summary = f"{len(rows)} shapes, lowest MAC {mac.min():.4f}; nearest model by shape: {near[0][0]}."
     data = {"scene": scene.name, "source": mesh.source, "passed": passed}
     if listed is None:
@@ -163,14 +162,16 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     return replace(listed, summary=f"{summary} {listed.summary}", tables=tables, warnings=warnings, data=data)
 
 
-def scale_free_error(shape: Array, exact: Array) -> float:
-    """Minimum of |a s - e| / |e| over a for weighted shapes (n,)."""
-    return float(np.linalg.norm(exact - shape * (shape @ exact) / (shape @ shape)) / np.linalg.norm(exact))
+def shape_errors(shapes: Array, exact: Array, x: Array) -> Array:
+    """Minimum of |a s - e| / |e| over a, (k,), for shapes and exact ones (k, n) at x (n,), weighted by length."""
+    s, e = (values * np.sqrt(node_weights(x)) for values in (shapes, exact))
+    scales = np.sum(s * e, axis=1, keepdims=True) / np.sum(s**2, axis=1, keepdims=True)
+    return np.asarray(np.linalg.norm(e - scales * s, axis=1) / np.linalg.norm(e, axis=1))
 
 
 def _nearest(beam: Beam, x: Array, values: Array, modes: Indices, count: int) -> list[tuple[str, int | None, float]]:
     """(model, N, rms shape error over the modes), nearest first."""
-    n, weights = int(modes.max()) + 1, np.sqrt(node_weights(x))
+    n = int(modes.max()) + 1
     models: dict[str, tuple[Array, int | None]] = {"exact beam": (exact_shapes(beam, n, x), None)}
     for name, model in (("elements", ELEMENTS), ("segments, joints corrected", CHAIN)):
         try:
@@ -181,8 +182,5 @@ def _nearest(beam: Beam, x: Array, values: Array, modes: Indices, count: int) ->
         if model == CHAIN:
             raw = [np.interp(x, solved.nodes, shape) for shape in solved.readings["raw"]()]
             models["segments, raw joints"] = (np.array(raw), count)
-    rows = []
-    for name, (shapes, size) in models.items():
-        pairs = zip(values * weights, shapes[modes] * weights, strict=True)
-        rows.append((name, size, float(np.sqrt(np.mean([scale_free_error(*pair) ** 2 for pair in pairs])))))
-    return sorted(rows, key=lambda row: row[2])
+    errors = {name: np.sqrt(np.mean(shape_errors(values, one[modes], x) ** 2)) for name, (one, _) in models.items()}
+    return [(name, models[name][1], float(errors[name])) for name in sorted(models, key=errors.__getitem__)]

@@ -5,6 +5,8 @@ the beam in another.
 """
 
 from itertools import product
+from operator import itemgetter
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -14,23 +16,31 @@ from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.reading import UNITS, FrequencyList
 from verify.errors import InputError
 from verify.exact.closed_forms import rod_frequency_hz
+from verify.options import THEORIES
 from verify.problem.beam import Beam
 
 RIGID = 3e-3
 """Fraction of the next frequency below which leading ones are rigid-body motions, unless the beam has such a gap."""
 LOOSE, CLOSE, BAND = 0.25, 0.05, 0.03
 """Largest log differences from the exact beam: of all modes, of the lower half in another unit, of motions in space."""
-MOST_IN_SPACE = 100
-"""Largest number of entries that are sorted by their motion."""
+MOST_IN_SPACE, FEWEST_SCALED = 100, 5
+"""Numbers of entries that are sorted by their motion: largest, and least with a common factor."""
 BENDING, ACROSS = "bending", "bending, width"
 
 
-class Motions(msgspec.Struct, frozen=True, eq=False):
-    """The motion of each elastic entry, its number from 0, (n,), and exact Hz, (n, 2): Euler-Bernoulli, with shear."""
+class Sorted(msgspec.Struct, frozen=True, eq=False):
+    """Elastic entries of a list, (k,) from 0, in the unit of its values, after the `rigid` leading ones.
 
-    names: tuple[str, ...]
+    `motions` (k,), their `modes` (k,) from 0 and exact frequencies (k,), Hz; MAC (k,) of entries known by shape.
+    """
+
+    listed: FrequencyList
+    rigid: int
+    entries: Indices
+    motions: tuple[str, ...]
     modes: Indices
     exact: Array
+    macs: Array | None = None
 
 
 def rigid_of(beam: Beam, hertz: Array) -> int:
@@ -43,57 +53,67 @@ def rigid_of(beam: Beam, hertz: Array) -> int:
     return 0
 
 
-def sort_list(beam: Beam, listed: FrequencyList) -> tuple[FrequencyList, Motions | None]:
-    """The list in the unit of its values, and its motions if they are those of a model in space, else None."""
-    tried = [listed, *(msgspec.structs.replace(listed, unit=unit) for unit in UNITS if unit != listed.unit)]
-    tried = [one for one in tried if np.isfinite(one.hertz).all() and (np.diff(one.hertz) >= 0.0).all()]
+def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
+    """The elastic entries by their order, as bending modes or motions in space; exact frequencies by the theory.
+
+    Raises InputError for frequencies that do not ascend and for a list without an elastic one.
+    """
+    from verify.engines.description import in_plane
+
+    tried: list[tuple[FrequencyList, int]] = []
+    for unit in dict.fromkeys((listed.unit, *UNITS)):
+        one = msgspec.structs.replace(listed, unit=unit)
+        rigid = rigid_of(beam, one.hertz) if np.isfinite(one.hertz).all() else 0
+        elastic = one.hertz[rigid:]  # those of rigid-body motions are rounding errors in any order
+        if np.isfinite(elastic).all() and elastic.all() and (np.diff(elastic) >= 0.0).all():
+            tried.append((one, rigid))
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
-    top = int(numbers.max())
-    exact = np.log([frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, top) for t in _theories(beam)])
-    for one in tried:
-        rigid = rigid_of(beam, one.hertz)
-        if not one.hertz[rigid:].all():
-            continue
-        modes = (numbers - 1 - rigid if numbers[0] == 1 else numbers - 1)[rigid:]
-        logs = np.log(one.hertz[rigid:])
-        off = np.maximum(np.maximum(exact.min(axis=0)[modes] - logs, logs - exact.max(axis=0)[modes]), 0.0)
-        if off.max() < LOOSE and (one is listed or off[: (len(off) + 1) // 2].max() < CLOSE):
-            return one, None
-    for one in tried if len(listed.values) <= MOST_IN_SPACE else ():
-        rigid = rigid_of(beam, one.hertz)
-        if one.hertz[rigid:].all() and (motions := _motions(beam, one.hertz[rigid:])):
-            return one, motions
-    return listed, None
-
-
-def _theories(beam: Beam) -> tuple[str, ...]:
-    """Theories of the exact beam for which its properties are known."""
     known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
-    return (EULER, "timoshenko") if known else (EULER,)
+    theories = THEORIES if known else (EULER,)
+    solved = [frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, int(numbers.max())) for t in theories]
+    exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(numbers.max()))
+
+    def by_order(one: FrequencyList, rigid: int) -> Sorted:
+        modes = (numbers - 1 - rigid if numbers[0] == 1 else numbers - 1)[rigid:]
+        return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(modes), modes, exact[modes])
+
+    for one, rigid in tried:
+        plane, logs = by_order(one, rigid), np.log(one.hertz[rigid:])
+        low, high = (np.log(bound(solved, axis=0))[plane.modes] for bound in (np.min, np.max))
+        off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
+        if off.max() < LOOSE and (one.unit == listed.unit or off[: (len(off) + 1) // 2].max() < CLOSE):
+            return plane
+    planes = {BENDING: beam, ACROSS: in_plane(beam, "width")}
+    lowest = min(frequencies_hz(Candidate(model=EXACT), plane, None, 1)[0] for plane in planes.values())
+    for scaled, (one, rigid) in product((False, True), tried if len(numbers) <= MOST_IN_SPACE else ()):
+        elastic = one.hertz[rigid:]  # first as they are, then with a common factor, for example of another modulus
+        factor = elastic[0] / lowest if scaled else 1.0
+        if abs(np.log(factor)) > LOOSE or (scaled and len(elastic) < FEWEST_SCALED):
+            continue
+        if motions := _motions(beam, planes, elastic / factor, factor, theories):
+            names, modes, values = motions
+            return Sorted(one, rigid, np.arange(rigid, len(numbers)), names, modes, values[:, theories.index(theory)])
+    if tried and tried[0][0].unit == listed.unit:
+        return by_order(*tried[0])
+    if listed.hertz[rigid_of(beam, listed.hertz) :].all():
+        raise InputError(f"{listed.source}: values do not ascend: sort them, or give the shapes of the modes")
+    raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
 
 
-def second_plane(beam: Beam) -> Beam:
-    """The beam that bends across its width: width and thickness exchanged; other sections are alike in both planes."""
-    if not (beam.width and beam.thickness):
-        return beam
-    turned = msgspec.structs.replace
-    sections = tuple(turned(one, width=one.thickness, thickness=one.width) for one in beam.section)
-    return turned(beam, width=beam.thickness, thickness=beam.width, section=sections)
+def _motions(
+    beam: Beam, planes: dict[str, Beam], hertz: Array, factor: float, theories: tuple[str, ...]
+) -> tuple[tuple[str, ...], Indices, Array] | None:
+    """Motions, modes (n,) and exact Hz (n, theories) of elastic frequencies (n,); None if they are not in space.
 
-
-def _motions(beam: Beam, hertz: Array) -> Motions | None:
-    """Motions of the elastic frequencies (n,), Hz, if each is within BAND of one and no bending mode is missing."""
+    Each is within BAND of an exact one, no bending mode is missing. `hertz` are without their common factor.
+    """
     from scipy.optimize import linear_sum_assignment
 
-    planes, top = {BENDING: beam, ACROSS: second_plane(beam)}, hertz[-1] * (1.0 + BAND)
-    rows: list[tuple[str, int, float, float]] = []
+    top = hertz[-1] * (1.0 + BAND)
+    rows: list[tuple[Any, ...]] = []
     for name, plane in planes.items():
-        solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in _theories(plane)]
-        rows += [
-            (name, i, float(bare), float(thick))
-            for i, (bare, thick) in enumerate(zip(solved[0], solved[-1], strict=True))
-            if thick < top
-        ]
+        solved = [frequencies_hz(Candidate(model=EXACT, theory=t), plane, None, len(hertz)) for t in theories]
+        rows += [(name, i, *values) for i, values in enumerate(zip(*solved, strict=True)) if values[-1] < top]
     choices = [{"clamped": (True,), "free": (False,)}.get(support, (True, False)) for support in beam.supports]
     for motion, fixed in product(("torsion", "extension"), product(*choices)):
         for mode in range(len(hertz)):
@@ -101,18 +121,24 @@ def _motions(beam: Beam, hertz: Array) -> Motions | None:
                 value = rod_frequency_hz(beam, mode + 1, motion, (fixed[0], fixed[1]))
             except InputError:  # stepped, with attachments, or without shape
                 break
-            if value > top:
+            if value > top * max(factor, 1.0 / factor):
                 break
-            rows.append((motion, mode, value, value))
+            rows.append((motion, mode, *[value] * len(theories)))
     if len(rows) < len(hertz):
         return None
-    exact = np.array([row[2:] for row in rows])
-    low, high = np.log(exact.min(axis=1)), np.log(exact.max(axis=1))
+    exact = np.array([row[2:] for row in rows], dtype=float)
+    bends = np.array([row[0] in planes for row in rows])
+    apart = np.where(bends, 0.0, -np.log(factor))  # other motions have the factor, or have it not: a wrong wall joint
+    low, high = np.log(exact.min(axis=1)) + np.minimum(apart, 0.0), np.log(exact.max(axis=1)) + np.maximum(apart, 0.0)
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
-    at = linear_sum_assignment(off + 1e-3 * abs(logs - 0.5 * (low + high)) + 1e3 * (off > BAND))[1]
-    missing = np.delete(np.array([row[0] in planes for row in rows]) & (high < np.log(hertz[-1]) - BAND), at)
+    # all entries are of one theory; only motions other than bending may be missing
+    costs = [abs(logs - near) + 1e3 * (off > BAND) + BAND * ~bends for near in np.log(exact.T)]
+    at = min(
+        ((cost[pairs].sum(), *pairs) for cost in costs for pairs in [linear_sum_assignment(cost)]), key=itemgetter(0)
+    )[2]
+    missing = np.delete(bends & (high < np.log(hertz[-1]) - BAND), at)
     names = tuple(rows[i][0] for i in at)
     if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
         return None
-    return Motions(names, np.array([rows[i][1] for i in at]), exact[at])
+    return names, np.array([rows[i][1] for i in at]), exact[at]

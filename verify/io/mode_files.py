@@ -14,6 +14,13 @@ UNIVERSAL = (".uff", ".unv")
 """Suffixes of universal files."""
 
 
+def is_mesh(suffix: str) -> bool:
+    """Whether files with this suffix are universal files or meshes."""
+    import meshio
+
+    return suffix in (*UNIVERSAL, *meshio.extension_to_filetypes)
+
+
 def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
     """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
     if path.suffix.lower() in UNIVERSAL:
@@ -22,7 +29,7 @@ def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[
 
 
 def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
-    """`read_points` of sets 15 or 2411 and 55, else peaks of responses, sets 58.
+    """`read_points` of sets 15 or 2411 and 55, else peaks of responses, sets 58, with their `resolution` in Hz.
 
     At a peak of the sum of squared responses their imaginary part is the shape. Raises InputError.
     """
@@ -32,6 +39,7 @@ def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[s
         int(n): xyz for one in of[15] + of[2411] for n, *xyz in zip(*map(one.get, ("node_nums", *"xyz")), strict=True)
     }
     modes: list[tuple[float, dict[int, Array]]] = []
+    field: dict[str, Array] = {}
     for one in of[55]:
         vectors = np.array([one["r1"], one["r2"], one["r3"]]).T
         vectors = (vectors * np.exp(-0.5j * np.angle((vectors**2 + 0j).sum()))).real
@@ -50,11 +58,13 @@ def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[s
                 axis = int(one[f"{moving}_dir"])
                 shape[int(one[f"{moving}_node"])][abs(axis) - 1] += np.sign(axis) * one["data"][i].imag
             modes.append((hertz, shape))
+        field["resolution"] = np.diff(of[58][0]["x"][:2])
     shared = sorted(set(node).intersection(*(shape for _, shape in modes)))
     if not modes or len(shared) < 3:
         raise InputError(f"{source} has {len(modes)} modes at {len(shared)} points: write sets 15 and 55, or 15 and 58")
     arrays = {f"mode_{i}": np.array([shape[n] for n in shared]) for i, (_, shape) in enumerate(modes, start=1)}
-    return np.array([node[n] for n in shared], dtype=float), arrays, {"hz": np.array([hertz for hertz, _ in modes])}
+    field["hz"] = np.array([hertz for hertz, _ in modes])
+    return np.array([node[n] for n in shared], dtype=float), arrays, field
 
 
 def read_response(path: Path, source: str) -> tuple[Array, ComplexArray]:

@@ -41,7 +41,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         raise NotImplementedError
 
 
-OWN = ("spectrum", "convergence", "wave", "motion", "motor", "identify", "control", "claims", "sweep", "optimise",
+OWN = ("spectrum", "convergence", "wave", "motion", "motor", "control", "identify", "claims", "sweep", "optimise",
        "sensitivity")  # fmt: skip
 STUDIES: Registry[type[Study]] = Registry(
     "study",

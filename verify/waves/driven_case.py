@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
-from msgspec.structs import asdict, replace
+from msgspec.structs import replace
 
-from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam
+from verify.actuators.on_beam import ActuatedBeam, Mounted, as_moments, on_beam
 from verify.actuators.port import Actuator
 from verify.actuators.shunt import Load
 from verify.arrays import Array, ComplexArray
@@ -45,11 +45,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         for device in self.devices:
             device.check_on(self.beam)
             if device.amplitude and self.kind != "force":
-                imposed = {"displacement": "imposed displacements"}.get(self.kind, f"a drive by {self.kind}")
-                raise InputError(
-                    f"drive.kind = {self.kind!r}: a device has no force under {imposed}, leave drive.device.amplitude "
-                    "out"
-                )
+                raise InputError(f"drive.kind = {self.kind!r}: a device then has no force, leave its amplitude out")
         if self.shunts and self.kind == "displacement":
             raise InputError("drive.kind = 'displacement': shunts take another kind, give 'force' or 'voltage'")
         if self.actuator is None and (self.shunts or self.electrical):
@@ -86,34 +82,30 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def actuated(self, forces: tuple[PointForce, ...], frequency_hz: float) -> ActuatedBeam:
         """The field and the ports of the actuators, driven ones first. Raises InputError."""
-        mounted = [*self._driven(forces), *self._shunted]
-        loads = () if self.electrical else self._loads(forces)
+        mounted, loads = self._mounted(forces), self._loads(forces)
         return on_beam(self.model, mounted, frequency_hz, forces=loads, devices=self.passive)
 
     @property
     def places(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Positions of transverse forces, and of moments, of the drive, devices and shunts, m."""
-        loads = [*(() if self.electrical else self._loads(self.acting))]
-        loads += [load for one in (*self._driven(self.acting), *self._shunted) for load in one.loads(self.beam)]
+        loads = [load for one in self._mounted(self.acting) for load in one.loads(self.beam)]
+        loads += self._loads(self.acting)
         turning = [load.position for load in loads if isinstance(load, PointMoment)]
         across = [load.position for load in loads if isinstance(load, PointForce)]
         across += [device.position for device in self.passive if device.across]
         return tuple(across), (*turning, *(device.position for device in self.passive if device.turning))
 
     def _loads(self, forces: Sequence[PointForce]) -> tuple[PointLoad, ...]:
-        return tuple(PointMoment(**asdict(one)) for one in forces) if self.kind == "moment" else tuple(forces)
+        """The forces or moments of a drive without actuators."""
+        return {"force": tuple(forces), "moment": as_moments(forces)}.get(self.kind, ())
 
-    def _driven(self, forces: Sequence[PointForce]) -> list[Mounted]:
-        if self.actuator is None or not self.electrical:
-            return []
-        amplitudes: list[dict[str, Any]] = [{self.kind: phasor(force)} for force in forces]
-        each = zip(forces, amplitudes, strict=True)
-        return [Mounted(actuator=self.actuator, position=force.position, **own) for force, own in each]
-
-    @property
-    def _shunted(self) -> list[Mounted]:
-        assert self.actuator is not None or not self.shunts
-        return [Mounted(actuator=self.actuator, position=x, load=load) for x, load in self.shunts]  # type: ignore[arg-type]
+    def _mounted(self, forces: Sequence[PointForce]) -> list[Mounted]:
+        """Driven actuators, then those with an electrical load."""
+        conditions: list[tuple[float, dict[str, Any]]] = [(x, {"load": load}) for x, load in self.shunts]
+        if self.electrical:
+            conditions = [*((one.position, {self.kind: phasor(one)}) for one in forces), *conditions]
+        own: Any = self.actuator
+        return [Mounted(actuator=own, position=x, **condition) for x, condition in conditions]
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber in the model, 1/m: by its discrete dispersion if known, else that of the beam.
