@@ -44,9 +44,10 @@ def test_tour_shows_every_command():
     assert [name for name in cli.list_commands(None) if f"verify {name}" not in text] == []
 
 
-def test_python_of_the_tour_runs():
+@pytest.mark.parametrize("name", ["tour", "actuators"])
+def test_python_of_a_page_runs(name):
     known = {}
-    for body in boxes(ROOT / "docs" / "tour.md", "python"):
+    for body in boxes(ROOT / "docs" / f"{name}.md", "python"):
         exec(body.replace('run_scene("paper")', 'run_scene("driving-layer")'), known)
     assert known["beam"].length == 0.5
 
