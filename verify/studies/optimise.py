@@ -164,16 +164,8 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             if i and (size := last[i]) is not None:
                 active = min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
             head = name, role, active, "" if unit == "1" else unit
-            sizes.append(
-                (
-                    *head,
-                    start[i],
-                    optimum[i],
-                    there[i],
-                    last[i],
-                    labels[i] if labels[i] and finer is not coarse else "the same",
-                )
-            )
+            model = labels[i] if labels[i] and finer is not coarse else "the same"
+            sizes.append((*head, start[i], optimum[i], there[i], last[i], model))
         shown = [
             Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES),
             Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], sizes),
@@ -181,7 +173,9 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         data = {"optimum": values, "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
         notes = list(dict.fromkeys(coarse.notes + finer.notes))
         if not finer.feasible or last[0] is None:
-            failure = f"no point satisfies all limits ({finer.found[best][1] or 'the best one is in the table'})"
+            failure = "no point satisfies all limits (the best one is in the table)"
+            if last[0] is None:
+                failure = f"no point has a value of all quantities (the first: {finer.found[best][1]})"
             margins = [void("the optimum", failure, "widen optimise.variable, or relax optimise.limit")]
             return Result("", shown, warnings=notes, data=data, margins=margins)
         loss = inf if there[0] is None else abs(there[0] - last[0]) / (max(abs(last[0]), abs(start[0] or 0.0)) or 1.0)

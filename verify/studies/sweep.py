@@ -133,11 +133,8 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
     tables, study, combination, number = task
     row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": []}
     try:
-        requests = [
-            (one.name, {key: value for key, value in study.arguments.items() if key in one.types})
-            for one in _quantities(study.quantities)
-        ]
-        scene, cache, requests = varied(tables, requests, combination)
+        requests: list[Request] = [(name, {}) for name in study.quantities]
+        scene, cache, requests = varied(tables, requests, study.arguments | combination)
         for name, arguments in requests:
             row[name] = as_plain(evaluate(name, arguments, scene, cache))
             row["margins"] += map(msgspec.to_builtins, quantity_margins(name, arguments, scene, cache))
@@ -151,14 +148,8 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
 def _row(line: bytes) -> dict[str, Any]:
     """The combination and the values of a line, with its margins."""
     row = json.loads(line)
-    for name, value in row.items():
-        if isinstance(value, dict) and {"re", "im"} == set(value):
-            row[name] = complex(value["re"], value["im"])
-        elif isinstance(value, dict) and {"lower", "upper"} == set(value):
-            row[name] = Bracket(**value)
-    row["margins"] = [msgspec.convert(one, Margin) for one in row["margins"]]
     del row["row"]
-    return {**row.pop("combination"), **row}
+    return {**row.pop("combination"), **row, "margins": msgspec.convert(row["margins"], list[Margin])}
 
 
 def _header(study: Sweep, tables: Mapping[str, Any]) -> bytes:
@@ -308,7 +299,8 @@ def _cell(value: Any) -> Any:
     """A value of a table: numbers, words; anything else as text."""
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    return str(value) if isinstance(value, list | tuple | dict) else as_text(value)
+    kind = {("re", "im"): complex, ("lower", "upper"): Bracket}.get(tuple(value)) if isinstance(value, dict) else None
+    return as_text(kind(*value.values())) if kind else str(value)
 
 
 def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -> None:
