@@ -134,7 +134,7 @@ def completed(
             yield futures[future], future.result()
     except Exception as error:
         if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
-            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file then continues"
+            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file continues from it"
             raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise
     finally:

@@ -282,8 +282,9 @@ def test_friction_on_the_driven_beam():
         ({"parameters": ["mu", "mu"]}, "give it once"),
         ({"what": "frequencies", "parameters": ["loss_factor"]}, "'loss_factor' is unknown to this model"),
         ({"x": [0.0, 0.1], "y": [0.1, 0.0]}, "give x and y, or a file, or synthetic"),
+        ({"x": [0.0, 0.1, 0.2], "y": [0.1, float("nan"), 0.0], "synthetic": None}, "not finite"),
     ],
 )
 def test_a_wrong_section_is_one_sentence(values, words):
     with pytest.raises(InputError, match=words):
-        changed(**values)
+        run(changed(**values))

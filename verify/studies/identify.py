@@ -131,6 +131,10 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 x, y = np.array(found.numbers or range(1, len(found.values) + 1)), found.hertz
             else:
                 x, y, phase = read_series(Path(self.file))
+        if self.what == "response":  # without 0 Hz, where spectra begin
+            x, y, phase = x[x != 0.0], y[x != 0.0], None if phase is None else phase[x != 0.0]
+        if not np.isfinite([*x, *y, *(() if phase is None else phase)]).all() or (x < 0.0).any():
+            raise InputError("identify: a value of x or y is not finite, or x is below zero, leave it out")
         model, order = self.model_of(scene, x, phase is not None), ORDERS.index(self.sensor)
         if self.what != "response" and (phase is not None or order):
             raise InputError(f"identify.what = {self.what!r}: its data have no phase or sensor, leave these out")

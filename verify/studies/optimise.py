@@ -263,7 +263,10 @@ class Search:
         if stage == "DE":
             options: Any = {"vectorized": True, "updating": "deferred", "polish": False, "rng": self.study.seed}
             options |= {"popsize": POPULATION, "maxiter": max(most // (POPULATION * d) - 1, 1), "x0": start}
-            differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, **options)
+            try:
+                differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, **options)
+            except RuntimeError as error:  # which scipy makes of the ValueError of a killed worker
+                raise error.__cause__ or error from None
             return
         if stage == "CMA-ES":
             try:
