@@ -23,6 +23,7 @@ from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.identify.fit import Model, Parameter, Values
+from verify.linear.numerics import gauss_rule
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import set_fields
 from verify.problem.point_attachments import PointMass, PointSpring
@@ -113,8 +114,8 @@ def response(
     slow = min(piece.bending_stiffness / piece.mass_per_length for piece in beam.pieces)
     wavenumber, rules = float((square.max() / slow) ** 0.25), list[tuple[Array, Array]]()
     for a, b in pairwise(sorted(set(stops))):  # between them the fields are smooth
-        t, g = np.polynomial.legendre.leggauss(12 + int(1.5 * wavenumber * (b - a)))
-        rules.append((a + 0.5 * (b - a) * (1.0 + t), 0.5 * (b - a) * g))
+        own = gauss_rule((a, b), 1 + int(wavenumber * (b - a) / pi))
+        rules.append((own.x, (b - a) * own.weights))
     x, weight = map(np.concatenate, zip(*rules, strict=True))
     piece = np.searchsorted(bounds[1:-1], x, side="right")
 

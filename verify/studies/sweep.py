@@ -255,18 +255,17 @@ def varied(
 
     A key with a dot is one of the scene, one without an argument of the quantities that have it. Raises InputError.
     """
-    own, known = {key: value for key, value in values.items() if "." not in key}, dict[str, None]()
-    for joined in values.keys() - own:
-        for key in joined.split(","):
-            tables = _put(tables, key.strip().split("."), joined, values[joined])
+    kinds = [QUANTITIES.named(name).types for name, _ in requests]
+    known = dict.fromkeys(key for types in kinds for key in types)
+    for joined, value in values.items():
+        for key in joined.split(",") if "." in joined else ():
+            tables = _put(tables, key.strip().split("."), joined, value)
+        if "." not in joined and joined not in known:
+            raise InputError(f"{joined} is no argument of the quantities: {near_name(joined, tuple(known))}")
     found = []
-    for name, arguments in requests:
-        types = QUANTITIES.named(name).types
-        known |= dict.fromkeys(types)
-        found.append((name, arguments | {key: value for key, value in own.items() if key in types}))
+    for (name, arguments), types in zip(requests, kinds, strict=True):
+        found.append((name, arguments | {key: value for key, value in values.items() if key in types}))
         QUANTITIES[name].bind(found[-1][1])
-    if unknown := next((key for key in own if key not in known), None):
-        raise InputError(f"{unknown} is no argument of the quantities: {near_name(unknown, tuple(known))}")
     scene = scene_from(tables)
     return scene, SolutionCache(scene.beam), found
 
