@@ -16,7 +16,7 @@ from verify.errors import InputError, shown
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
+VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; unset: 1, of `verify` all cores
 CLIENT: ContextVar[Any] = ContextVar("client", default=None)
 """Client of the cluster inside `with cluster(...)`."""
 PATIENCE = 30.0
@@ -86,12 +86,12 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def workers(most: int, processes: int | None = None, unset: int | None = 1) -> Iterator[Executor | None]:
-    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS, else `unset`.
+def workers(most: int, processes: int | None = None) -> Iterator[Executor | None]:
+    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS.
 
     None where one process is enough. Raises InputError unless VERIFY_JOBS is a positive integer.
     """
-    text = str(processes or os.environ.get(VARIABLE, "") or unset)
+    text = str(processes or os.environ.get(VARIABLE) or 1)
     if not (text.isascii() and text.isdigit() and int(text)):
         raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
     client, n = CLIENT.get(), min(int(text), most)

@@ -6,7 +6,6 @@ populations need one number for each point, which an executor evaluates. The loc
 and treats limits as constraints. Before it is reported the optimum is searched again on a finer model, from the first.
 """
 
-import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -141,7 +140,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self.check(scene)
         tables = plain_tables(scene)
         begin = self.start(tables)
-        with workers(self.evaluations, unset=os.cpu_count()) as executor:
+        with workers(self.evaluations) as executor:
             coarse = finer = Search(self, tables, self.requests, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:

@@ -83,7 +83,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress, file: Path | None = None) -> "Result":
         """Evaluate the quantities over every combination of the lists in `over`, the first key slowest.
 
-        Runs on as many processes as VERIFY_JOBS says, else as there are cores, or on the workers of `parallel.cluster`.
+        Runs on as many processes as VERIFY_JOBS says, or on the workers of `parallel.cluster`.
         Rows are appended to `file`; those that it already has are not computed. Returns one table with a row for each
         combination, and a chart of each quantity over one or two lists. Raises InputError for an unknown quantity, key
         or argument, and for a file of another sweep; a combination that raises it is a row with the reason.
@@ -97,7 +97,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         # unbuffered: an interrupt comes before or after a whole line
         with (
             open(file or os.devnull, "ab", buffering=0) as out,
-            workers(len(todo) - 1, unset=os.cpu_count()) as executor,
+            workers(len(todo) - 1) as executor,
         ):
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
                 out.write(line)
