@@ -193,8 +193,9 @@ def test_rows_of_another_sweep_are_refused(tmp_path, fragile):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
-def test_ctrl_c_and_a_kill_leave_whole_lines_and_no_process(tmp_path, how):
+@pytest.mark.parametrize("name", ["SIGINT", "SIGKILL"])
+def test_ctrl_c_and_a_kill_leave_whole_lines_and_no_process(tmp_path, name):
+    how = getattr(signal, name)
     words = "sweep paper-wave wave.reflection model=segment count=400 phase_deg=1-900 --to rows"
     process = subprocess.Popen(
         [sys.executable, "-m", "verify", *words.split()], cwd=tmp_path, stderr=subprocess.PIPE, start_new_session=True,

@@ -114,7 +114,9 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def check(self, scene: "Scene") -> None:
         """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
         tables = plain_tables(scene)
-        varied(tables, self.requests, self.values(self.start(tables)))
+        varied(tables, self.requests, values := self.values(self.start(tables)))
+        if len(values) < len(self.variable):
+            raise InputError("optimise.variable: a key occurs twice, give each once")
 
     def start(self, tables: dict[str, Any]) -> Point:
         """Start of each variable, from 0 to 1. Raises InputError."""

@@ -88,7 +88,10 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The distribution of each input. Raises InputError."""
         requests = [(self.quantity, self.arguments)]
         found = [one.of(value_at(tables, one.key, requests)) for one in self.input]
-        varied(tables, requests, {one.key: float(own.median()) for one, own in zip(self.input, found, strict=True)})
+        medians = {one.key: float(own.median()) for one, own in zip(self.input, found, strict=True)}
+        varied(tables, requests, medians)
+        if len(medians) < len(found):
+            raise InputError("sensitivity.input: a key occurs twice, give each once")
         return found
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
