@@ -7,16 +7,16 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
-from signal import SIG_IGN, SIGINT, signal
+from threading import Thread
 from typing import Any, TypeVar
 
 from verify.errors import InputError, shown
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
+VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; unset: 1, of `verify` all cores
 CLIENT: ContextVar[Any] = ContextVar("client", default=None)
 """Client of the cluster inside `with cluster(...)`."""
 PATIENCE = 30.0
@@ -42,15 +42,9 @@ def cluster(where: str | int) -> Iterator[None]:
         try:
             if isinstance(where, int):
                 remedy = "in a script of your own call it below if __name__ == '__main__'"
-                with ExitStack() as starting:
-                    with suppress(ValueError):  # outside of the main thread
-                        starting.callback(
-                            signal, SIGINT, signal(SIGINT, SIG_IGN)
-                        )  # workers leave Ctrl-C to this process
-                    address = LocalCluster(
-                        n_workers=where, threads_per_worker=1, dashboard_address=":0", silence_logs=50
-                    )
-                stack.enter_context(address)
+                own: Any = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
+                with _interrupts_blocked():  # also in the workers, for ever: Ctrl-C is this process's alone
+                    address = stack.enter_context(LocalCluster(n_workers=where, **own))
             client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
             client.wait_for_workers(1, timeout=PATIENCE)
             theirs = client.run(versions)
@@ -67,12 +61,37 @@ def cluster(where: str | int) -> Iterator[None]:
 
 
 @contextmanager
-def workers(most: int, processes: int | None = None, unset: int | None = 1) -> Iterator[Executor | None]:
-    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS, else `unset`.
+def _interrupts_blocked() -> Iterator[None]:
+    """Ctrl-C has its effect at the end of the context; threads and processes that start inside inherit the block."""
+    if sys.platform == "win32":
+        yield
+        return
+    from multiprocessing.resource_tracker import ensure_running
+    from signal import SIG_BLOCK, SIG_SETMASK, SIGINT, pthread_sigmask
+
+    ensure_running()  # which would undo the block
+    before = pthread_sigmask(SIG_BLOCK, {SIGINT})
+    try:
+        yield
+    finally:
+        pthread_sigmask(SIG_SETMASK, before)
+
+
+def _end_with_parent() -> None:
+    """End this worker with its parent, which may be killed: its own end of their queue would keep it waiting."""
+    from multiprocessing import parent_process
+
+    parent: Any = parent_process()
+    Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
+
+
+@contextmanager
+def workers(most: int, processes: int | None = None) -> Iterator[Executor | None]:
+    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS.
 
     None where one process is enough. Raises InputError unless VERIFY_JOBS is a positive integer.
     """
-    text = str(processes or os.environ.get(VARIABLE, "") or unset)
+    text = str(processes or os.environ.get(VARIABLE) or 1)
     if not (text.isascii() and text.isdigit() and int(text)):
         raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
     client, n = CLIENT.get(), min(int(text), most)
@@ -84,13 +103,13 @@ def workers(most: int, processes: int | None = None, unset: int | None = 1) -> I
 
     # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
     context = get_context("fork" if sys.platform == "linux" else "spawn")
-    executor = client.get_executor(pure=False) if client else ProcessPoolExecutor(n, mp_context=context)
+    pool = ProcessPoolExecutor(n, context, _end_with_parent) if client is None else client.get_executor(pure=False)
     try:
-        yield executor
+        yield pool
     except BaseException:
-        executor.shutdown(wait=False)  # on a cluster this cancels what is pending
+        pool.shutdown(wait=False)  # on a cluster this cancels what is pending
         raise
-    executor.shutdown()
+    pool.shutdown()
 
 
 def completed(
@@ -115,7 +134,7 @@ def completed(
             yield futures[future], future.result()
     except Exception as error:
         if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
-            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file then continues"
+            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file continues from it"
             raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise
     finally:

@@ -115,6 +115,7 @@ def test_a_doubled_count_where_the_exact_beam_has_no_value_leaves_a_margin():
         ({"quantity": "wave.reflexion"}, "wave.reflection"),
         ({"variable": (Variable(key="drive.forse.1.phase_deg", low=0.0, high=1.0),)}, "'force'"),
         ({"variable": (replace(PHASE, low=100.0),)}, "start"),
+        ({"variable": (PHASE, PHASE)}, "a key occurs twice"),
         ({"variable": (Variable(key="phase", low=0.0, high=1.0, start=0.5),)}, "'phase_deg'"),
         ({"arguments": {"modell": "fem"}}, "'model'"),
     ],
@@ -165,6 +166,7 @@ def test_an_interaction_has_a_total_share_above_its_first_order():
         ({"n": 100}, "give a power of two, 128"),
         ({"input": (Input(key="beam.lenght", sd=0.1),)}, "'length'"),
         ({"input": (Input(key="beam.length", sd=0.5),)}, "reduce sd"),
+        ({"input": 2 * (Input(key="beam.length", sd=0.01),)}, "a key occurs twice"),
     ],
 )
 def test_what_has_no_shares_is_refused(change, word):

@@ -193,16 +193,19 @@ def test_rows_of_another_sweep_are_refused(tmp_path, fragile):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_ctrl_c_leaves_whole_lines(tmp_path):
+@pytest.mark.parametrize("name", ["SIGINT", "SIGKILL"])
+def test_ctrl_c_and_a_kill_leave_whole_lines_and_no_process(tmp_path, name):
+    how = getattr(signal, name)
     words = "sweep paper-wave wave.reflection model=segment count=400 phase_deg=1-900 --to rows"
     process = subprocess.Popen(
-        [sys.executable, "-m", "verify", *words.split()], cwd=tmp_path, stderr=subprocess.PIPE, start_new_session=True
-    )
+        [sys.executable, "-m", "verify", *words.split()], cwd=tmp_path, stderr=subprocess.PIPE, start_new_session=True,
+        env=os.environ | {"VERIFY_JOBS": "2"},
+    )  # fmt: skip
     while not (tmp_path / "rows").exists() or (tmp_path / "rows").read_bytes().count(b"\n") < 4:
         sleep(0.02)
-    os.killpg(process.pid, signal.SIGINT)
-    assert process.communicate(timeout=60)[1].strip() == b"verify: interrupted"
-    assert process.returncode == 130
+    (os.killpg if how == signal.SIGINT else os.kill)(process.pid, how)
+    error = process.communicate(timeout=60)[1].strip()  # returns when no worker has the pipe any more
+    assert (error, process.returncode) == ((b"verify: interrupted", 130) if how == signal.SIGINT else (b"", -how))
     assert 4 <= (tmp_path / "rows").read_bytes().count(b"\n") < 900
     assert (tmp_path / "rows").read_bytes().endswith(b"\n")
 

@@ -23,7 +23,7 @@ from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.identify.fit import Model, Parameter, Values
-from verify.options import Theory
+from verify.linear.numerics import gauss_rule
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import set_fields
 from verify.problem.point_attachments import PointMass, PointSpring
@@ -69,19 +69,19 @@ def varied(beam: Beam, values: Values) -> Beam:
     return replace(beam, **own, supports=tuple(supports), spring=tuple(springs))
 
 
-def frequencies(beam: Beam, names: Sequence[str], modes: Array, theory: Theory = "euler-bernoulli") -> Model:
-    """Logarithms of the frequencies of modes (n,), from 1; noise is relative. Raises InputError."""
+def frequencies(beam: Beam, names: Sequence[str], modes: Array) -> Model:
+    """Logarithms of the frequencies of modes (n,), from 1, by Euler-Bernoulli theory; noise is relative.
+
+    Raises InputError.
+    """
     parameters, index = known(beam, names), np.asarray(modes, dtype=int) - 1
     del parameters["loss_factor"]
     if (index != np.asarray(modes) - 1).any() or index.min() < 0:
         raise InputError(f"modes = {modes.tolist()}: give mode numbers from 1")
-    turning = any(one.rotational for one in beam.spring) or any(one.rotary_inertia for one in beam.mass)
-    if theory == "timoshenko" and (turning or set(WALLS) & set(parameters)):
-        raise InputError("theory = 'timoshenko': rotational springs and bodies need another, give 'rayleigh'")
 
     def predict(values: Values) -> tuple[Array, dict[str, Array]]:
         own = varied(beam, values)
-        solved = ExactModel(own, theory).modes(int(index.max()) + 1)
+        solved = ExactModel(own).modes(int(index.max()) + 1)
         hertz = solved.frequencies_hz[index]
         square, stiff, heavy = (2.0 * pi * hertz) ** 2, np.zeros(len(index)), np.zeros(len(index))
         places = np.array([0.0, beam.length, *(one.position for one in own.attached)])
@@ -114,8 +114,8 @@ def response(
     slow = min(piece.bending_stiffness / piece.mass_per_length for piece in beam.pieces)
     wavenumber, rules = float((square.max() / slow) ** 0.25), list[tuple[Array, Array]]()
     for a, b in pairwise(sorted(set(stops))):  # between them the fields are smooth
-        t, g = np.polynomial.legendre.leggauss(12 + int(1.5 * wavenumber * (b - a)))
-        rules.append((a + 0.5 * (b - a) * (1.0 + t), 0.5 * (b - a) * g))
+        own = gauss_rule((a, b), 1 + int(wavenumber * (b - a) / pi))
+        rules.append((own.x, (b - a) * own.weights))
     x, weight = map(np.concatenate, zip(*rules, strict=True))
     piece = np.searchsorted(bounds[1:-1], x, side="right")
 

@@ -19,15 +19,16 @@ from verify.arrays import Array, Indices
 from verify.errors import InputError, near_name
 
 Values: TypeAlias = dict[str, float]
-REJECTED, HARD = 0.01, 0.1
-"""Probability below which residuals contradict the model; relative half width of an interval that needs a profile."""
+REJECTED, HARD, ROUGH = 0.01, 0.1, 0.1
+"""Probability below which residuals contradict the model; relative half width of an interval that needs a profile;
+relative noise that is too large to be estimated from the residuals, which are as large where the fit is wrong."""
 SINGULAR, INVOLVED = 1e5, 0.05
 """Condition of the Jacobian with columns of unit length, above which it is singular; least component of a singular
 direction, over its largest, in relative changes, that involves a parameter."""
 DOUBLINGS, LAGS, FEWEST = 12, 8, 24
 """Steps outwards of a profile; lags of the test of white residuals, and its least number of residuals."""
-SMALL = "the residuals are smaller than the noise, which is overestimated"
-LARGE = "the residuals are larger than the noise, the model or the noise is wrong"
+LARGE = "the residuals are larger than the noise, the model, the start or the noise is wrong"
+UNLIKELY = "the residuals are above 10 %, the model or the start is wrong; give the noise if the data are that rough"
 COLOURED = "the residuals are not white, the model is incomplete and the intervals are too short"
 
 
@@ -90,8 +91,8 @@ class Fit:
     """A model fitted to data: `curve` and `residuals` (data - curve), (n,); `noise`, the sd that the intervals use.
 
     `chi2` is the sum of squares over noise^2, `fitness` the probability of more if the model holds, None where the
-    noise is estimated; `whiteness` that of more correlated residuals, None for too few. `rejected`: of SMALL, LARGE and
-    COLOURED those that hold.
+    noise is estimated; `whiteness` that of more correlated residuals, None for too few. `rejected`: of LARGE,
+    UNLIKELY and COLOURED those that hold.
     """
 
     estimates: Mapping[str, Estimate]
@@ -231,7 +232,7 @@ def fit(
     ratio = least / noise**2 if noise else None
     fitness = None if ratio is None or not freedom else float(chdtrc(freedom, ratio))
     white = whiteness(rest.reshape(model.channels, -1)) if sigma > 1e-9 * abs(curve).max() else None  # else rounding
-    tests = {LARGE: fitness, SMALL: None if fitness is None else 1.0 - fitness, COLOURED: white}
+    tests = {LARGE: fitness, COLOURED: white, UNLIKELY: 0.0 if model.logs and not noise and sigma > ROUGH else None}
     rejected = tuple(words for words, chance in tests.items() if chance is not None and chance < REJECTED)
     return Fit(estimates, curve, -rest, sigma, freedom, ratio, fitness, white, rejected)
 

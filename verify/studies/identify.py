@@ -9,7 +9,6 @@ from msgspec import Meta
 
 from verify.analysis.verdict import Margin, void
 from verify.errors import InputError
-from verify.options import Theory
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import plot_lines
@@ -66,7 +65,6 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     noise: Annotated[Noise | None, Meta(description="Standard deviation of the data; estimated unless set.")] = None
     x: Annotated[tuple[float, ...], Meta(description="Times, s, mode numbers, or frequencies, Hz.")] = ()
     y: Annotated[tuple[float, ...], Meta(description="Speeds, m/s, frequencies, Hz, or |H|, m/N.")] = ()
-    phase_deg: Annotated[tuple[float, ...], Meta(description="Phases of H, degrees.")] = ()
     file: Annotated[str | None, Meta(description="Columns x, y, for H also phase or re, im; or .uff.")] = None
     synthetic: Annotated[Synthetic | None, Meta(description="Data of the model with noise.")] = None
     force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway.")] = 1.0
@@ -75,7 +73,6 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     sensor: Annotated[
         Literal["displacement", "velocity", "acceleration"], Meta(description="What the data of H divide by the force.")
     ] = "displacement"
-    theory: Annotated[Theory, Meta(description="Beam theory of frequencies.")] = "euler-bernoulli"
     model: Annotated[str, Meta(description="Model of the beam under a run.")] = "fem"
     count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
     profiles: Annotated[bool | None, Meta(description="Profiles; computed for wide intervals unless set.")] = None
@@ -86,8 +83,8 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         if (bool(self.x or self.y), self.file is not None, self.synthetic is not None).count(True) != 1:
             raise InputError("identify: give x and y, or a file, or synthetic")
-        if len(self.x) != len(self.y) or len(self.phase_deg) not in (0, len(self.y)):
-            raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many, phase_deg too")
+        if len(self.x) != len(self.y):
+            raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many")
         self.model_of(scene, np.array([1.0])).values({}, self.parameters)
 
     def model_of(self, scene: "Scene", x: "Array", phase: bool = True) -> "Model":
@@ -96,7 +93,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         names = (*self.parameters, *self.start, *(self.synthetic.true if self.synthetic else ()))
         if self.what == "frequencies":
-            return beam.frequencies(scene.beam, names, x, self.theory)
+            return beam.frequencies(scene.beam, names, x)
         if self.what == "response":
             return beam.response(scene.beam, names, x, self.force_at, self.sensor_at, phase=phase)
         if scene.slider is None:
@@ -125,7 +122,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             model = self.model_of(scene, x)
             exact = model.predict(model.values(own.true))[0]
             return model, exact + own.noise * np.random.default_rng(own.seed).standard_normal(len(exact))
-        x, y, phase = np.array(self.x), np.array(self.y), np.deg2rad(self.phase_deg) if self.phase_deg else None
+        x, y, phase = np.array(self.x), np.array(self.y), None
         if self.file is not None:
             from verify.compare.reading import read_frequencies, read_series
 
@@ -134,6 +131,10 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 x, y = np.array(found.numbers or range(1, len(found.values) + 1)), found.hertz
             else:
                 x, y, phase = read_series(Path(self.file))
+        if self.what == "response":  # without 0 Hz, where spectra begin
+            x, y, phase = x[x != 0.0], y[x != 0.0], None if phase is None else phase[x != 0.0]
+        if not np.isfinite([*x, *y, *(() if phase is None else phase)]).all() or (x < 0.0).any():
+            raise InputError("identify: a value of x or y is not finite, or x is below zero, leave it out")
         model, order = self.model_of(scene, x, phase is not None), ORDERS.index(self.sensor)
         if self.what != "response" and (phase is not None or order):
             raise InputError(f"identify.what = {self.what!r}: its data have no phase or sensor, leave these out")
@@ -159,11 +160,9 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Fit the parameters. Raises InputError."""
         import numpy as np
 
-        from verify.identify.fit import SMALL
-
         progress(f"fit of {', '.join(self.parameters)}")
         model, data, found = self.fitted(scene, cache)
-        margins = [void("the fit", words, leads=True) for words in found.rejected if words != SMALL]
+        margins = [void("the fit", words, leads=True) for words in found.rejected]
         known, rows, rejected = list[str](), list[list[Any]](), bool(margins)
         for one in found.estimates.values():
             half = 0.5 * (one.interval[1] - one.interval[0])

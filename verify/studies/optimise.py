@@ -6,7 +6,6 @@ populations need one number for each point, which an executor evaluates. The loc
 and treats limits as constraints. Before it is reported the optimum is searched again on a finer model, from the first.
 """
 
-import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -115,7 +114,9 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def check(self, scene: "Scene") -> None:
         """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
         tables = plain_tables(scene)
-        varied(tables, self.requests, self.values(self.start(tables)))
+        varied(tables, self.requests, values := self.values(self.start(tables)))
+        if len(values) < len(self.variable):
+            raise InputError("optimise.variable: a key occurs twice, give each once")
 
     def start(self, tables: dict[str, Any]) -> Point:
         """Start of each variable, from 0 to 1. Raises InputError."""
@@ -141,7 +142,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self.check(scene)
         tables = plain_tables(scene)
         begin = self.start(tables)
-        with workers(self.evaluations, unset=os.cpu_count()) as executor:
+        with workers(self.evaluations) as executor:
             coarse = finer = Search(self, tables, self.requests, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:
@@ -164,16 +165,8 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             if i and (size := last[i]) is not None:
                 active = min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
             head = name, role, active, "" if unit == "1" else unit
-            sizes.append(
-                (
-                    *head,
-                    start[i],
-                    optimum[i],
-                    there[i],
-                    last[i],
-                    labels[i] if labels[i] and finer is not coarse else "the same",
-                )
-            )
+            model = labels[i] if labels[i] and finer is not coarse else "the same"
+            sizes.append((*head, start[i], optimum[i], there[i], last[i], model))
         shown = [
             Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES),
             Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], sizes),
@@ -181,7 +174,9 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         data = {"optimum": values, "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
         notes = list(dict.fromkeys(coarse.notes + finer.notes))
         if not finer.feasible or last[0] is None:
-            failure = f"no point satisfies all limits ({finer.found[best][1] or 'the best one is in the table'})"
+            failure = "no point satisfies all limits (the best one is in the table)"
+            if last[0] is None:
+                failure = f"no point has a value of all quantities (the first: {finer.found[best][1]})"
             margins = [void("the optimum", failure, "widen optimise.variable, or relax optimise.limit")]
             return Result("", shown, warnings=notes, data=data, margins=margins)
         loss = inf if there[0] is None else abs(there[0] - last[0]) / (max(abs(last[0]), abs(start[0] or 0.0)) or 1.0)
@@ -269,7 +264,10 @@ class Search:
         if stage == "DE":
             options: Any = {"vectorized": True, "updating": "deferred", "polish": False, "rng": self.study.seed}
             options |= {"popsize": POPULATION, "maxiter": max(most // (POPULATION * d) - 1, 1), "x0": start}
-            differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, **options)
+            try:
+                differential_evolution(lambda x: self.merits(x.T), [(0.0, 1.0)] * d, **options)
+            except RuntimeError as error:  # which scipy makes of the ValueError of a killed worker
+                raise error.__cause__ or error from None
             return
         if stage == "CMA-ES":
             try:

@@ -5,7 +5,6 @@ where all others are known (I. M. Sobol', Math. Comput. Simul. 55 (2001) 271-280
 them (A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270).
 """
 
-import os
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -89,7 +88,10 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The distribution of each input. Raises InputError."""
         requests = [(self.quantity, self.arguments)]
         found = [one.of(value_at(tables, one.key, requests)) for one in self.input]
-        varied(tables, requests, {one.key: float(own.median()) for one, own in zip(self.input, found, strict=True)})
+        medians = {one.key: float(own.median()) for one, own in zip(self.input, found, strict=True)}
+        varied(tables, requests, medians)
+        if len(medians) < len(found):
+            raise InputError("sensitivity.input: a key occurs twice, give each once")
         return found
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
@@ -118,7 +120,7 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return np.array([values[-len(tasks) :]])
 
         distributions = self.distributions(tables)
-        with workers(self.n, unset=os.cpu_count()) as executor:
+        with workers(self.n) as executor:
             shares = sobol_indices(func=quantity, n=self.n, dists=distributions, rng=self.seed)
         both, mixed = np.reshape(values[: 2 * self.n], (2, self.n)), np.reshape(values[2 * self.n :], (self.n, -1)).T
         centre = both.mean()

@@ -83,7 +83,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress, file: Path | None = None) -> "Result":
         """Evaluate the quantities over every combination of the lists in `over`, the first key slowest.
 
-        Runs on as many processes as VERIFY_JOBS says, else as there are cores, or on the workers of `parallel.cluster`.
+        Runs on as many processes as VERIFY_JOBS says, or on the workers of `parallel.cluster`.
         Rows are appended to `file`; those that it already has are not computed. Returns one table with a row for each
         combination, and a chart of each quantity over one or two lists. Raises InputError for an unknown quantity, key
         or argument, and for a file of another sweep; a combination that raises it is a row with the reason.
@@ -97,7 +97,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         # unbuffered: an interrupt comes before or after a whole line
         with (
             open(file or os.devnull, "ab", buffering=0) as out,
-            workers(len(todo) - 1, unset=os.cpu_count()) as executor,
+            workers(len(todo) - 1) as executor,
         ):
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
                 out.write(line)
@@ -133,11 +133,8 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
     tables, study, combination, number = task
     row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": []}
     try:
-        requests = [
-            (one.name, {key: value for key, value in study.arguments.items() if key in one.types})
-            for one in _quantities(study.quantities)
-        ]
-        scene, cache, requests = varied(tables, requests, combination)
+        requests: list[Request] = [(name, {}) for name in study.quantities]
+        scene, cache, requests = varied(tables, requests, study.arguments | combination)
         for name, arguments in requests:
             row[name] = as_plain(evaluate(name, arguments, scene, cache))
             row["margins"] += map(msgspec.to_builtins, quantity_margins(name, arguments, scene, cache))
@@ -151,14 +148,8 @@ def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
 def _row(line: bytes) -> dict[str, Any]:
     """The combination and the values of a line, with its margins."""
     row = json.loads(line)
-    for name, value in row.items():
-        if isinstance(value, dict) and {"re", "im"} == set(value):
-            row[name] = complex(value["re"], value["im"])
-        elif isinstance(value, dict) and {"lower", "upper"} == set(value):
-            row[name] = Bracket(**value)
-    row["margins"] = [msgspec.convert(one, Margin) for one in row["margins"]]
     del row["row"]
-    return {**row.pop("combination"), **row}
+    return {**row.pop("combination"), **row, "margins": msgspec.convert(row["margins"], list[Margin])}
 
 
 def _header(study: Sweep, tables: Mapping[str, Any]) -> bytes:
@@ -264,18 +255,17 @@ def varied(
 
     A key with a dot is one of the scene, one without an argument of the quantities that have it. Raises InputError.
     """
-    own, known = {key: value for key, value in values.items() if "." not in key}, dict[str, None]()
-    for joined in values.keys() - own:
-        for key in joined.split(","):
-            tables = _put(tables, key.strip().split("."), joined, values[joined])
+    kinds = [QUANTITIES.named(name).types for name, _ in requests]
+    known = dict.fromkeys(key for types in kinds for key in types)
+    for joined, value in values.items():
+        for key in joined.split(",") if "." in joined else ():
+            tables = _put(tables, key.strip().split("."), joined, value)
+        if "." not in joined and joined not in known:
+            raise InputError(f"{joined} is no argument of the quantities: {near_name(joined, tuple(known))}")
     found = []
-    for name, arguments in requests:
-        types = QUANTITIES.named(name).types
-        known |= dict.fromkeys(types)
-        found.append((name, arguments | {key: value for key, value in own.items() if key in types}))
+    for (name, arguments), types in zip(requests, kinds, strict=True):
+        found.append((name, arguments | {key: value for key, value in values.items() if key in types}))
         QUANTITIES[name].bind(found[-1][1])
-    if unknown := next((key for key in own if key not in known), None):
-        raise InputError(f"{unknown} is no argument of the quantities: {near_name(unknown, tuple(known))}")
     scene = scene_from(tables)
     return scene, SolutionCache(scene.beam), found
 
@@ -308,7 +298,8 @@ def _cell(value: Any) -> Any:
     """A value of a table: numbers, words; anything else as text."""
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    return str(value) if isinstance(value, list | tuple | dict) else as_text(value)
+    kind = {("re", "im"): complex, ("lower", "upper"): Bracket}.get(tuple(value)) if isinstance(value, dict) else None
+    return as_text(kind(*value.values())) if kind else str(value)
 
 
 def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -> None:
