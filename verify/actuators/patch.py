@@ -4,9 +4,8 @@ Beam theory of the laminate (E. F. Crawley, J. de Luis, AIAA J. 25:1373 (1987), 
 IEEE Trans. UFFC 38:256 (1991)): plane sections, no axial force, stress along the beam alone. With the field E3 = V/t
 along the poling the stress is T1 = (S1 - d31 E3)/s11E, so that the transformed section has the modulus 1/s11E in the
 layers and a voltage adds a constant bending moment over the patch. The field is taken as constant through a layer. The
-true one, of constant D3, stiffens the layer against its own bending by k31^2/(1 - k31^2); `induced_stiffening` is the
-size of this neglect in EI. The bond is thin and rigid; free edges relieve the stress within about a layer's thickness,
-so the patch is long against t.
+true one, of constant D3, stiffens the layer against its own bending by k31^2/(1 - k31^2). The bond is thin and rigid;
+free edges relieve the stress within about a layer's thickness, so the patch is long against t.
 """
 
 from typing import Annotated, Any
@@ -15,8 +14,8 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.actuators.materials import PIEZO, MaterialName, PiezoMaterial
-from verify.actuators.port import Actuator, Port
+from verify.actuators.materials import Ceramic
+from verify.actuators.port import Port
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import CrossSection, Section, piece_of, set_fields
@@ -36,7 +35,7 @@ class Laminate(msgspec.Struct, frozen=True, kw_only=True):
     """Distance from the neutral line to the beam's bare surface, or with two layers to that of a layer, m."""
 
 
-class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="patch"):
+class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="patch"):
     """Layers of ceramic on one side (unimorph) or both sides (bimorph, in antiphase) of a rectangular beam.
 
     The layers are electrically in parallel. A positive voltage bends the ends of the beam towards the first layer, +w,
@@ -51,13 +50,11 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
     """Across the beam, m; default: the beam's width."""
     sides: Annotated[int, Meta(ge=1, le=2)] = 2
     """1: a layer on the side of +w; 2: a layer on either side."""
-    material: MaterialName | PiezoMaterial = "pzt-4"
-    """Ceramic: pzt-4, pzt-8, or a table of its constants."""
     substrate: CrossSection | None = None
     """Rectangular section under the patch; default: that of the beam to which `bonded` fixes the patch."""
 
     def __post_init__(self) -> None:
-        validate(self, "patch")
+        super().__post_init__()
         section = self.substrate
         if section is not None:
             validate(section, "patch.substrate")
@@ -69,14 +66,9 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 
     @property
-    def ceramic(self) -> PiezoMaterial:
-        """The material's constants."""
-        return PIEZO[self.material] if isinstance(self.material, str) else self.material
-
-    @property
     def _constants(self) -> tuple[complex, complex, complex]:
         """(s11E, e31 = d31/s11E, epsS = epsT33 (1 - k31^2)) of a narrow layer: 1/Pa, C/m^2, F/m."""
-        s, d, permittivity = self.ceramic.bar_constants("31")
+        s, d, permittivity = self.bar_constants("31")
         return s, d / s, permittivity - d**2 / s
 
     def bonded(self, beam: Beam) -> "Patch":
@@ -123,13 +115,6 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         (width, _), n = self._sizes, self.sides
         extension = (e31 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
         return self.length * (n * permittivity * width / self.thickness + extension)
-
-    @property
-    def induced_stiffening(self) -> float:
-        """Relative increase of EI by the field that bending induces within a layer, which the laminate neglects."""
-        _, e31, permittivity = self._constants
-        second_moment = self.sides * self._sizes[0] * self.thickness**3 / 12.0
-        return (e31**2 / permittivity).real * second_moment / self.laminate.bending_stiffness
 
     def port(self, omega: Any) -> Port:
         """Moments +F and -F at the right and left end, v the rate of the difference of the slopes there, rad/s.
