@@ -130,7 +130,7 @@ def test_orders_of_the_field_and_of_the_velocity_of_actuators(model, counts, act
 
 
 @over(MODELS)
-@pytest.mark.parametrize("actuator", [SOFT, PATCH.bonded(BEAM)], ids=["stack", "patch"])
+@pytest.mark.parametrize("actuator", [SOFT, replace(PATCH, dielectric_loss=0.013).bonded(BEAM)], ids=["stack", "patch"])
 def test_power_in_is_power_out_and_losses_and_a_lossless_beam_returns_it_all(name, actuator):
     beam = replace(BEAM, loss_factor=0.0)
     found = on_beam(MODELS[name](beam), mounted(actuator), HERTZ)

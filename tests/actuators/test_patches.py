@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 from tests.reference.dense import Elements
 from verify import Beam, ExactModel, HermiteModel, InputError, PointForce
 from verify.actuators.materials import PIEZO
+from verify.actuators.on_beam import Mounted, on_beam
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import ShuntedMode
 from verify.quantities import evaluate
@@ -65,12 +66,14 @@ def smits_and_choi(h, t, width):
     return -6.0 * PZT.d31 * sm * sp * h * (h + t) / k, 12.0 * sm * sp * (sm * t + sp * h) / (k * width)
 
 
-@pytest.mark.parametrize(("length", "centre"), [(ARM.length, 0.5 * ARM.length), (0.047, 0.061)])
+@pytest.mark.parametrize(("length", "centre"), [(ARM.length, 0.5 * ARM.length), (0.047, 0.061), (0.047, 0.0235)])
 def test_unimorph_cantilever_bends_as_smits_and_choi_state(length, centre):
     patch = replace(ONE, length=length, width=None).bonded(ARM)
     tip = HermiteModel(patch.on(ARM, centre), 12).harmonic([PointForce(position=ARM.length)], 1e-3)
     ends = np.array([centre - 0.5 * length, centre + 0.5 * length])
     per_volt = patch.moment_per_volt.real * np.diff(tip.slope(ends).real)[0]  # by reciprocity
+    driven = on_beam(ExactModel(patch.on(ARM, centre)), Mounted(actuator=patch, position=centre, voltage=1.0), 1e-3)
+    assert driven.field.deflection(ARM.length)[0] == pytest.approx(per_volt, rel=1e-8)
     curvature, compliance = smits_and_choi(ARM.thickness, patch.thickness, ARM.width)
     assert per_volt == pytest.approx(curvature * length * (ARM.length - centre), rel=1e-8)
     lever = ARM.length - ends

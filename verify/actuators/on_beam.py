@@ -30,7 +30,7 @@ from verify.linear.positions import Loads, frequencies_on, loads_on
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.problem.supports import check_free
+from verify.problem.supports import FIXED, check_free
 from verify.validation import as_tuple, check_position
 
 QUASI_STATIC = 0.05
@@ -61,10 +61,13 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
             check_free("actuator", self.position, beam.length, beam.supports, {"force": 1.0})
             return (PointForce(position=self.position),)
         half = 0.5 * self.actuator.length
-        ends = self.position - half, self.position + half
-        for end in ends:
+        ends = {1.0: self.position + half, -1.0: self.position - half}
+        for end in ends.values():
             check_position("actuator.position, an end of the patch,", end, beam.length)
-        return PointMoment(position=ends[1]), PointMoment(position=ends[0], amplitude=-1.0)
+        # a moment at a clamped or guided end of the beam, which does not turn, has no effect
+        still = [x for x, name in zip((0.0, beam.length), beam.supports, strict=True) if FIXED[name].rotation]
+        return tuple(PointMoment(position=end, amplitude=sign) for sign, end in ends.items()
+                     if all(abs(end - x) > 1e-9 * beam.length for x in still))  # fmt: skip
 
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""

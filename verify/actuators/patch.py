@@ -14,12 +14,12 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.actuators.materials import Ceramic
-from verify.actuators.port import Port
+from verify.actuators.materials import PIEZO, MaterialName, PiezoMaterial
+from verify.actuators.port import Actuator, Port
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import CrossSection, Section, piece_of, set_fields
-from verify.validation import check_number, unit, validate
+from verify.validation import Relative, check_number, unit, validate
 
 
 class Laminate(msgspec.Struct, frozen=True, kw_only=True):
@@ -35,7 +35,7 @@ class Laminate(msgspec.Struct, frozen=True, kw_only=True):
     """Distance from the neutral line to the beam's bare surface, or with two layers to that of a layer, m."""
 
 
-class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="patch"):
+class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="patch"):
     """Layers of ceramic on one side (unimorph) or both sides (bimorph, in antiphase) of a rectangular beam.
 
     The layers are electrically in parallel. A positive voltage bends the ends of the beam towards the first layer, +w,
@@ -50,11 +50,15 @@ class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_
     """Across the beam, m; default: the beam's width."""
     sides: Annotated[int, Meta(ge=1, le=2)] = 2
     """1: a layer on the side of +w; 2: a layer on either side."""
+    material: MaterialName | PiezoMaterial = "pzt-4"
+    """Ceramic: pzt-4, pzt-8, or a table of its constants."""
+    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
+    """tan delta of the free ceramic; bending of the layers has no loss."""
     substrate: CrossSection | None = None
     """Rectangular section under the patch; default: that of the beam to which `bonded` fixes the patch."""
 
     def __post_init__(self) -> None:
-        super().__post_init__()
+        validate(self, "patch")
         section = self.substrate
         if section is not None:
             validate(section, "patch.substrate")
@@ -66,10 +70,9 @@ class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_
                 check_number("patch.width", self.width, "metres, at most the beam's width", at_most=section.width)
 
     @property
-    def _constants(self) -> tuple[complex, complex, complex]:
-        """(s11E, e31 = d31/s11E, epsS = epsT33 (1 - k31^2)) of a narrow layer: 1/Pa, C/m^2, F/m."""
-        s, d, permittivity = self.bar_constants("31")
-        return s, d / s, permittivity - d**2 / s
+    def ceramic(self) -> PiezoMaterial:
+        """The constants of the material."""
+        return PIEZO[self.material] if isinstance(self.material, str) else self.material
 
     def bonded(self, beam: Beam) -> "Patch":
         """The patch on the section of a beam. Raises InputError for a beam that is not rectangular."""
@@ -85,10 +88,10 @@ class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_
 
     @property
     def laminate(self) -> Laminate:
-        """The transformed section over the patch, real parts of its moduli. Raises InputError without a beam."""
-        (width, h), t, n = self._sizes, self.thickness, self.sides
+        """The transformed section over the patch. Raises InputError without a beam."""
+        (width, h), t, n, ceramic = self._sizes, self.thickness, self.sides, self.ceramic
         bare = piece_of(set_fields(self.substrate), 1.0, "patch.substrate", 0.33)  # type: ignore[arg-type]
-        layer, mass = (1.0 / self._constants[0]).real * width * t, self.ceramic.density * width * t
+        layer, mass = width * t / ceramic.derived.s11, width * t * ceramic.density
         axial, distance = bare.axial_stiffness + n * layer, 0.5 * (h + t)
         offset = layer * distance / axial if n == 1 else 0.0
         lever = distance - offset
@@ -104,17 +107,18 @@ class Patch(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_
         )
 
     @property
-    def moment_per_volt(self) -> complex:
-        """B = -n e31 width lever, N m/V: bending moment on the section per volt, curvature w'' > 0 positive."""
-        return -self.sides * self._constants[1] * self._sizes[0] * self.laminate.lever
+    def moment_per_volt(self) -> float:
+        """B = -n e31 width lever, N m/V, e31 = d31/s11E: bending moment per volt, curvature w'' > 0 positive."""
+        derived = self.ceramic.derived
+        return -self.sides * derived.d31 / derived.s11 * self._sizes[0] * self.laminate.lever
 
     @property
     def capacitance(self) -> complex:
         """C at equal slopes of both ends, F: n epsS area/t, and for a unimorph the charge of its free extension."""
-        _, e31, permittivity = self._constants
-        (width, _), n = self._sizes, self.sides
-        extension = (e31 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
-        return self.length * (n * permittivity * width / self.thickness + extension)
+        one, (width, _), n = self.ceramic.derived, self._sizes, self.sides
+        clamped = one.eps33 * (1.0 - 1j * self.dielectric_loss) - one.d31**2 / one.s11  # epsS
+        extension = (one.d31 / one.s11 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
+        return self.length * (n * clamped * width / self.thickness + extension)
 
     def port(self, omega: Any) -> Port:
         """Moments +F and -F at the right and left end, v the rate of the difference of the slopes there, rad/s.

@@ -101,7 +101,7 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         neglect of those beyond `modes` falls with 1/n_modes. Raises InputError for a mode without coupling.
         """
         ends = [position - 0.5 * patch.length, position + 0.5 * patch.length]
-        turning = patch.moment_per_volt.real * modes.slope(ends) @ [-1.0, 1.0]
+        turning = patch.moment_per_volt * modes.slope(ends) @ [-1.0, 1.0]
         squares = (2.0 * pi * modes.frequencies_hz) ** 2
         own = squares[number - 1]
         others = squares != own

@@ -4,15 +4,17 @@ A base, passive and piezoelectric lines, and the tip, whose outward velocity and
 """
 
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.actuators.materials import Ceramic, Direction, Form
-from verify.actuators.port import Port
-from verify.validation import unit, validate
+from verify.actuators.materials import PIEZO, Direction, Form, MaterialName, PiezoMaterial
+from verify.actuators.port import Actuator, Port
+from verify.errors import InputError
+from verify.validation import Relative, unit, validate
 
 if TYPE_CHECKING:
     from verify.actuators.bar import Line, PiezoLine
@@ -28,15 +30,54 @@ class Parts(NamedTuple):
     front: "Line | None"
 
 
-class Longitudinal(Ceramic, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
-    """What all longitudinal transducers share."""
+class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
+    """What all longitudinal transducers share.
 
+    Losses are those of the strain-charge form, which catalogues measure: sE (1 - i/Q), d (1 - i p), epsT (1 - i tan
+    delta) with e^{+i omega t} (R. Holland, IEEE Trans. Sonics Ultrason. 14:18, 1967). Raises InputError for values
+    outside their limits, and for a piezoelectric loss that makes the ceramic a source of energy.
+    """
+
+    material: MaterialName | PiezoMaterial = "pzt-4"
+    """Piezoelectric ceramic: pzt-4, pzt-8, or a table of its constants."""
     base: Base = "free"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
+    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
+    """tan delta of the free ceramic."""
+    mechanical_loss: Annotated[Relative, unit("1/Q", ge=0, lt=1)] = 0.0
+    """1/Q with short-circuited electrodes."""
+    piezoelectric_loss: Annotated[Relative, unit("loss tangent", gt=-1, lt=1)] = 0.0
+    """Loss tangent of d31 and d33."""
     form: Form = "mason"
     """Mason's three-port, KLM, or the equivalent circuit: equal, but for the truncation of the circuit."""
     branches: Annotated[int, Meta(ge=1, le=100_000)] = 20
     """Number of branches of the equivalent circuit."""
+
+    def __post_init__(self) -> None:
+        validate(self, "actuator")
+        if self.piezoelectric_loss:
+            derived = self.ceramic.derived
+            limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(derived.k33, derived.k31, 1e-300)
+            if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
+                raise InputError(
+                    f"actuator.piezoelectric_loss = {self.piezoelectric_loss!r} makes the ceramic a source of energy: "
+                    f"give at most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
+                )
+
+    @property
+    def ceramic(self) -> PiezoMaterial:
+        """The constants of the material, without losses."""
+        return PIEZO[self.material] if isinstance(self.material, str) else self.material
+
+    def bar_constants(self, direction: Direction) -> tuple[complex, complex, complex]:
+        """(sE, d, epsT33) of a slender bar with losses: 1/Pa, C/N, F/m."""
+        real = self.ceramic.derived
+        compliance, d = (real.s33, real.d33) if direction == "33" else (real.s11, real.d31)
+        return (
+            compliance * (1.0 - 1j * self.mechanical_loss),
+            d * (1.0 - 1j * self.piezoelectric_loss),
+            real.eps33 * (1.0 - 1j * self.dielectric_loss),
+        )
 
     @property
     def lossless(self) -> "Longitudinal":
