@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 from msgspec.structs import replace
 
+from verify.actuators.patch import Patch
 from verify.errors import InputError
 from verify.quantities import options as opt
+from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Scene, quantity
 from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured
 
@@ -22,11 +24,7 @@ Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.
 
 def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
     """(port of the scene's actuator, rad/s)."""
-    from verify.actuators.patch import Patch
-
-    actuator = scene.drive.actuator if scene.drive else None
-    if actuator is None:
-        raise InputError("drive.actuator is missing: give the design of an actuator, its kind and sizes")
+    actuator = scene_actuator(scene)
     omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
     return (actuator.bonded(scene.beam) if isinstance(actuator, Patch) else actuator).port(omega), omega
 

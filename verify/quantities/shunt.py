@@ -12,6 +12,7 @@ from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
+from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
@@ -39,9 +40,7 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
             omega = 2.0 * pi * self.short_hz
             mode = ShuntedMode(coupling=self.coupling, omega=omega, capacitance=self.capacitance)
         elif self.coupling is None and self.mode is not None and self.position is not None:
-            patch: Any = None if scene.drive is None else scene.drive.actuator
-            if not isinstance(patch, Patch):
-                raise InputError(f"mode = {self.mode!r} needs [drive.actuator] with kind = 'patch', or give coupling")
+            patch = scene_actuator(scene, Patch, "patch")
             modes = MODELS[EXACT].build(patch.on(scene.beam, self.position)).modes(self.mode + 60)
             mode = ShuntedMode.bonded(modes, patch.bonded(scene.beam), self.position, self.mode)
         else:
@@ -77,13 +76,10 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tupl
     """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
     from verify.waves.impedance_matching import ending
 
-    actuator = None if scene.drive is None else scene.drive.actuator
-    if not isinstance(actuator, Longitudinal):
-        raise InputError("drive.actuator is missing or a patch: an absorbing actuator acts at a point, give a stack")
     check_number("position", position, "metres from the right end", below=scene.beam.length)
     hertz = opt.drive_frequency(scene, frequency_hz)
     end, omega = ending(scene.beam, hertz, position, scene.beam.supports[1]), 2.0 * pi * hertz
-    port = actuator.port(omega)
+    port = scene_actuator(scene, Longitudinal).port(omega)
     return port, end, absorbing_load(port, end.matched, omega), omega
 
 
