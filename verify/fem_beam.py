@@ -326,7 +326,7 @@ class HermiteModel(DiscreteModel):
         k = complex(2.0 * np.arcsin(np.sqrt(2.0 * c / (b + np.sqrt(b * b + 4.0 * a * c + 0j)))) / self.unit)
         return k if k.imag <= 0.0 else k.conjugate()
 
-    @property
+    @cached_property
     def cut_off_hz(self) -> float:
         """Cut-off frequency, Hz: half a wavelength on the element with the lowest one.
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from msgspec.structs import asdict, replace
 
+from verify.actuators.patch import Patch
 from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
@@ -62,6 +63,7 @@ SCENES = {
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
     "actuated": scene_of(STRIP, actuator=Stack(layers=20, layer_thickness=5e-4, area=25e-6)),
+    "patched": scene_of(STRIP, actuator=Patch(length=0.02, thickness=2e-4)),
     "decay": Scene(name="decay", beam=STRIP, slider=RIDER, studies={"identify": DECAY}),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
@@ -89,6 +91,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
     **{f"wave.{name}": ("stacks", {}) for name in ("voltage_ratio", "voltage_direction", "pure_voltage_phase")},
     "drive.power": ("stacks", {"actuator": 2}), "drive.force_per_volt": ("stacks", {}),
+    "drive.moment_per_volt": ("patched", {}),
     "drive.impedance_ratio": ("stacks", {}), "wave.best_ratio": ("driven", {}), "wave.best_ratio_phase": ("driven", {}),
     "wave.order": ("driven", {"model": "fem", "counts": [20, 40, 80]}),
     "wave.lumped_swr": ("bare", {"x": 0.31, "modes": [5, 6]}),

@@ -123,7 +123,7 @@ def test_a_device_without_parameters_or_with_negative_ones_is_an_input_error():
         ExactModel(STRIP).harmonic([], 700.0, devices=SPRING_AND_DASHPOT)
     with pytest.raises(InputError, match=r"impedance = .* is active"):
         of_impedance(0.3, -1.0 + 2.0j, 700.0)
-    with pytest.raises(InputError, match=r"drive\.kind = 'displacement': .* leave drive\.device\.amplitude out"):
+    with pytest.raises(InputError, match=r"drive\.kind = 'displacement': .* leave its amplitude out"):
         DrivenCase(model=ExactModel(STRIP), forces=FORCES, frequency_hz=9.0, kind="displacement", devices=SEVERAL)
 
 

@@ -12,7 +12,7 @@ hence (1 + Z_e M) F = F0 - Z_e v0. A very stiff actuator imposes the displacemen
 terms, loses as many digits as Z_e M has.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import pi
 from typing import Any
 
@@ -38,7 +38,10 @@ QUASI_STATIC = 0.05
 
 
 class Mounted(msgspec.Struct, frozen=True, kw_only=True):
-    """An actuator on a beam, with one electrical condition: a voltage, a current (0: open electrodes) or a load."""
+    """An actuator on a beam, with one electrical condition: a voltage, a current (0: open electrodes) or a load.
+
+    A voltage with a load is that of a source behind the load, in series.
+    """
 
     actuator: Actuator
     position: float
@@ -51,8 +54,10 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
     """Electrical load."""
 
     def __post_init__(self) -> None:
-        if sum(one is not None for one in (self.voltage, self.current, self.load)) != 1:
-            raise InputError(f"actuator at position = {self.position!r} m: give one of voltage, current and load")
+        given = [one is not None for one in (self.voltage, self.current, self.load)]
+        if sum(given) != 1 and given != [True, False, True]:
+            only = "one of voltage, current and load, or voltage and load"
+            raise InputError(f"actuator at position = {self.position!r} m: give {only}")
 
     def loads(self, beam: Beam) -> tuple[PointLoad, ...]:
         """The load of its mechanical port for F = 1. Raises InputError off the beam, and at a fixed point of it."""
@@ -72,11 +77,15 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""
         factor: Any = port.force_factor
-        if self.voltage is not None:
+        if self.voltage is not None and self.load is None:
             return factor * self.voltage, complex(port.short_impedance)
-        if self.load is None:
-            return factor / port.blocked_admittance * self.current, port.loaded_impedance()
-        return 0.0, port.loaded_impedance(self.load.admittance(omega))
+        current, load = self.feed(omega)
+        return factor / (port.blocked_admittance + load) * current, port.loaded_impedance(load)
+
+    def feed(self, omega: float) -> tuple[complex, complex]:
+        """(current of a source in parallel, A, admittance of the load, S) of all conditions but a voltage alone."""
+        load = 0.0 if self.load is None else complex(self.load.admittance(omega))
+        return (load * self.voltage if self.voltage is not None else self.current or 0.0), load
 
 
 class ActuatorState(msgspec.Struct, frozen=True, kw_only=True):
@@ -117,13 +126,22 @@ def on_beam(
     *,
     forces: Loads = (),
     devices: Devices = (),
+    modal_damping: float = 0.0,
 ) -> ActuatedBeam:
     """The steady field of a beam with actuators, under other harmonic loads and with passive devices.
 
-    Raises InputError for an actuator off the beam, two at one place or an active device, and ResonanceError at an
-    undamped resonance of the beam without its actuators.
+    `modal_damping` as in `BeamModel.harmonic`. Raises InputError for an actuator off the beam, two at one place or an
+    active device, and ResonanceError at an undamped resonance of the beam without its actuators.
     """
-    mounted, others = as_tuple("actuators", actuators, Mounted), loads_on(model.beam, forces, PointLoad)
+    mounted = as_tuple("actuators", actuators, Mounted)
+    return responder(model, mounted, frequency_hz, forces=forces, devices=devices)(mounted)
+
+
+def responder(
+    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = ()
+) -> Callable[[Sequence[Mounted]], ActuatedBeam]:
+    """The steady field by the electrical conditions of the actuators, which leave the unit fields as they are."""
+    others = loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)
     if any(device.amplitude for device in passive):
         raise InputError("devices: a device beside actuators has no force of its own, give a PointForce")
@@ -139,11 +157,11 @@ def on_beam(
         # the weights of a transverse port are those of a device, which include the beam's compliance at its own place
         own = [Device(position=one.position, amplitude=1.0) for one in load if isinstance(one, PointForce)]
         turning = [one for one in load if isinstance(one, PointMoment)]
-        return cut.harmonic(turning, frequency_hz, devices=(*passive, *own))
+        return cut.harmonic(turning, frequency_hz, devices=(*passive, *own), modal_damping=modal_damping)
 
     try:
         units = [field(load) for load in loads]
-        rest = [cut.harmonic(others, frequency_hz, devices=passive)] if others else []
+        rest = [cut.harmonic(others, frequency_hz, devices=passive, modal_damping=modal_damping)] if others else []
     except ResonanceError as error:
         raise ResonanceError(
             f"{error}; the fields of actuators are superposed on the beam without them, whose resonance this is"
@@ -153,29 +171,33 @@ def on_beam(
     moved = moved * 1j * omega
     p, ports = len(loads), [one.actuator.port(omega) for one in mounted]
     free = moved[:, p] if rest else np.zeros(p)
-    blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
-    applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
-    velocity = free + moved[:, :p] @ applied
-    parts = [*zip(applied.tolist(), units, strict=True), *((1.0, one) for one in rest)]
-    whole, sums = combined(parts), dict[float, complex]()
-    for weight, one in parts:
-        for force in one.forces:
-            sums[force.position] = sums.get(force.position, 0.0) + weight * phasor(force)
-    whole = replace(
-        whole,
-        beam=model.beam,
-        forces=tuple(point_force(at, value) for at, value in sums.items()),
-        couples=tuple(sorted({at for _, one in parts for at in one.couples})),
-    )
-    states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
-    return ActuatedBeam(field=whole, actuators=tuple(states))
+
+    def respond(mounted: Sequence[Mounted]) -> ActuatedBeam:
+        blocked, impedance = np.array([one.source(port, omega) for one, port in zip(mounted, ports, strict=True)]).T
+        applied = np.linalg.solve(np.eye(p) + impedance[:, None] * moved[:, :p], blocked - impedance * free)
+        velocity = free + moved[:, :p] @ applied
+        parts = [*zip(applied.tolist(), units, strict=True), *((1.0, one) for one in rest)]
+        whole, sums = combined(parts), dict[float, complex]()
+        for weight, one in parts:
+            for force in one.forces:
+                sums[force.position] = sums.get(force.position, 0.0) + weight * phasor(force)
+        whole = replace(
+            whole,
+            beam=model.beam,
+            forces=tuple(point_force(at, value) for at, value in sums.items()),
+            couples=tuple(sorted({at for _, one in parts for at in one.couples})),
+        )
+        states = map(_state, mounted, ports, applied.tolist(), velocity.tolist(), [omega] * p)
+        return ActuatedBeam(field=whole, actuators=tuple(states))
+
+    return respond
 
 
 def _state(mounted: Mounted, port: Port, force: complex, v: complex, omega: float) -> ActuatorState:
     b, y, z = (complex(one) for one in (port.force_factor, port.blocked_admittance, port.short_impedance))
-    if mounted.voltage is None:
-        load = 0.0 if mounted.load is None else complex(mounted.load.admittance(omega))
-        voltage = ((mounted.current or 0.0) - b * v) / (y + load)
+    if mounted.voltage is None or mounted.load is not None:
+        fed, load = mounted.feed(omega)
+        voltage = (fed - b * v) / (y + load)
     else:
         voltage = complex(mounted.voltage)
     current = y * voltage + b * v if mounted.current is None else complex(mounted.current)
@@ -197,58 +219,80 @@ def as_moments(forces: Sequence[PointForce]) -> tuple[PointMoment, ...]:
     return tuple(PointMoment(**asdict(one)) for one in forces)
 
 
+class QuasiStatic(Actuator, frozen=True, kw_only=True):
+    """An actuator far below its resonance, whose spring and mass are part of the beam."""
+
+    force_factor: float
+    """B, N/V."""
+    capacitance: float
+    """C at rest, F."""
+
+    def port(self, omega: Any) -> Port:
+        """The port at angular frequencies omega (rad/s), a number or (n,)."""
+        own = 1j * omega * self.capacitance
+        return Port(force_factor=self.force_factor, short_impedance=0.0 * omega, blocked_admittance=own)
+
+
 class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
     """A beam and its loads in time that are equivalent to a drive."""
 
     beam: Beam
     loads: tuple[PointLoad, ...]
+    circuits: tuple[Mounted, ...] = ()
+    """Actuators with electrical loads, whose springs and masses are part of the beam."""
     error: float = 0.0
     """Relative error of an actuator's dynamic stiffness as a spring and a mass, its losses included."""
 
 
 def beam_in_time(
-    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float
-) -> BeamInTime:
-    """The beam and the loads that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
+    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float,
+    shunts: Sequence[tuple[float, Load]] = (),
+) -> BeamInTime:  # fmt: skip
+    """The beam, loads and circuits that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
 
     Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
     of i omega Z_e in powers of omega^2; a current sees the stiffness of open electrodes. A patch is a part of the
-    section. Force factors are those of the steady state. Raises InputError for displacements, the current of a patch,
-    and an error of the reduction above `QUASI_STATIC`, losses of the actuator included.
+    section. Force factors and capacitances are those of the steady state. `shunts` are (position, m, load) of passive
+    actuators. Raises InputError for displacements, the current of a patch, and an error of the reduction above
+    `QUASI_STATIC`, losses of the actuator included.
     """
-    if kind == "force":
-        return BeamInTime(beam=beam, loads=tuple(forces))
-    if kind == "moment":
-        return BeamInTime(beam=beam, loads=as_moments(forces))
-    if kind == "displacement" or actuator is None or (kind == "current" and isinstance(actuator, Patch)):
+    if kind == "displacement" or (kind == "current" and isinstance(actuator, Patch)):
         what = "displacements" if kind == "displacement" else "currents of a patch"
         raise InputError(f"drive.kind = {kind!r}: a beam moves in time under no {what}, give 'force' or 'voltage'")
+    driven = tuple(forces) if kind in ("voltage", "current") else ()
+    loads: tuple[PointLoad, ...] = () if driven else as_moments(forces) if kind == "moment" else tuple(forces)
+    if actuator is None or not (driven or shunts):
+        return BeamInTime(beam=beam, loads=loads)
     omega = 2.0 * pi * frequency_hz
     if isinstance(actuator, Patch):
-        whole, patch = actuator.on(beam, [one.position for one in forces]), actuator.bonded(beam)
-        turning = [Mounted(actuator=patch, position=one.position, voltage=phasor(one)) for one in forces]
+        whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
+        patch = actuator.bonded(beam)
         volts = complex(patch.port(omega).force_factor).real
-        loads = [replace(load, amplitude=volts * force.amplitude * load.amplitude, phase_deg=force.phase_deg)
-                 for one, force in zip(turning, forces, strict=True) for load in one.loads(whole)]  # fmt: skip
-        return BeamInTime(beam=whole, loads=tuple(loads))
-
-    def dynamic(at: Any) -> Any:
-        port = actuator.port(at)
-        return 1j * at * (port.loaded_impedance() if kind == "current" else port.short_impedance)
-
-    low = omega * np.array([0.1, 0.2, 0.3])
-    stiffness, mass, _ = np.linalg.solve(np.vander((low / omega) ** 2, increasing=True), dynamic(low).real).tolist()
-    exact, port = complex(dynamic(np.array([omega]))[0]), actuator.port(omega)
-    error = abs(exact - (stiffness + mass)) / abs(exact)
-    if error > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
-        raise InputError(
-            f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} (at "
-            f"most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
-        )
+        pairs = [replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
+                 for one in driven
+                 for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)]  # fmt: skip
+        circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
+        return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
+    port, worst, low = actuator.port(omega), 0.0, np.array([0.1, 0.2, 0.3, 1.0])
+    places = [(one.position, kind == "current") for one in driven] + [(x, False) for x, _ in shunts]
+    for x, opened in dict.fromkeys(places):
+        ports = actuator.port(omega * low)
+        dynamic = 1j * omega * low * (ports.loaded_impedance() if opened else ports.short_impedance)
+        stiffness, mass, _ = np.linalg.solve(np.vander(low[:3] ** 2, increasing=True), dynamic[:3].real).tolist()
+        worst = float(abs(dynamic[3] - (stiffness + mass)) / abs(dynamic[3]))
+        if worst > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
+            raise InputError(
+                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {worst:.2g} "
+                f"(at most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
+            )
+        springs = *beam.spring, PointSpring(position=x, stiffness=stiffness)
+        beam = replace(beam, spring=springs, mass=(*beam.mass, PointMass(position=x, mass=-mass / omega**2)))
     factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
-    places = dict.fromkeys(one.position for one in forces)
-    springs = (PointSpring(position=x, stiffness=stiffness) for x in places)
-    masses = (PointMass(position=x, mass=-mass / omega**2) for x in places)
-    whole = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, *masses))
-    loads = [point_force(one.position, factor * phasor(one)) for one in forces]
-    return BeamInTime(beam=whole, loads=tuple(loads), error=error)
+    capacitance = (complex(port.blocked_admittance) / (1j * omega)).real
+    own = QuasiStatic(force_factor=complex(port.force_factor).real, capacitance=capacitance)
+    return BeamInTime(
+        beam=beam,
+        loads=(*loads, *(point_force(one.position, factor * phasor(one)) for one in driven)),
+        circuits=tuple(Mounted(actuator=own, position=x, load=load) for x, load in shunts),
+        error=worst,
+    )

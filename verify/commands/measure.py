@@ -28,7 +28,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
         step(quantity)
         value = evaluate(quantity, given, loaded, cache := SolutionCache(loaded.beam))
         margins = quantity_margins(quantity, given, loaded, cache)
-    unit = QUANTITIES.named(quantity).unit
+    unit = QUANTITIES.named(quantity).unit_of(given)
     result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
         own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}

@@ -1,6 +1,6 @@
 """Harmonic forces with a polynomial envelope, and the exact response of complex modal rows."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import msgspec
@@ -34,9 +34,33 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     loads: ComplexArray
     """psi at the forces times their phasors, (n,), N/sqrt(kg)."""
 
+    backward_loads: ComplexArray | None = None
+    """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg); None for real psi."""
+    readings: ComplexArray = np.empty((0, 0), dtype=complex)
+    """psi of outputs other than the deflection, (n, outputs)."""
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Admissible numbers of coordinates in `of_state`."""
+        return (len(self.rates),)
+
+    def shapes(self, basis: TimeBasis) -> Callable[[Array, int], Any]:
+        """(x, derivative) -> psi, (n, len(x)), of rows on a basis."""
+        return basis.shapes
+
     def state(self, z: ComplexArray) -> tuple[Array, Array]:
         """(q, dq/dt) of modes, (n,) each."""
         return z.real, (self.rates * z).real
+
+    def energies(self, z: ComplexArray) -> tuple[float, float]:
+        """Kinetic and elastic energy, J."""
+        q, rates = self.state(z)
+        return 0.5 * float(rates @ rates), 0.5 * float(abs(self.rates) ** 2 @ q**2)
+
+    def accounts(self, forced: "Forced") -> tuple[Array, Array]:
+        """Tables of the energy balance, see `integrator.add_powers`."""
+        table = np.array([self.loads.real, self.loads.imag, -2.0 * self.rates.real, 0.0 * self.rates.real])
+        return interleaved(forced.forward + forced.backward), table
 
     def of_state(self, q: Array, rates: Array) -> ComplexArray:
         """State z of modes with amplitudes q and rates dq/dt, (n,): Re z = q, Re(lambda z) = dq/dt."""
@@ -71,6 +95,11 @@ class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.asarray(self.forward.T @ psi + self.backward.T @ psi.conj())
 
 
+def interleaved(amplitudes: ComplexArray) -> Array:
+    """Alternate real and imaginary parts, (n, k) complex -> (n, 2 k)."""
+    return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
+
+
 def modal_rows(basis: TimeBasis, forces: Sequence[PointLoad], damping: Ratio) -> Rows:
     """The modes of a basis under forces, with damping ratio `damping`, a number or (n,)."""
     loads = sum((phasor(f) * basis.modal_load(f) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
@@ -92,9 +121,9 @@ def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, or
     Half of the force drives e^{i omega t}, half e^{-i omega t}; each amplitude follows from the highest power down,
     (i omega - lambda) A_d + (d + 1)/T A_{d+1} = c F envelope_d / 2, exact for any polynomial.
     """
-    half = 0.5 * rows.loads[:, None] * envelope
-    pairs = ((rows.rates, rows.participations), (rows.rates.conj(), rows.participations.conj()))
-    parts = [_amplitudes(1j * omega - rate, c[:, None] * half, unit_s) for rate, c in pairs]
+    back = rows.loads if rows.backward_loads is None else rows.backward_loads
+    pairs = ((rows.rates, rows.participations, rows.loads), (rows.rates.conj(), rows.participations.conj(), back))
+    parts = [_amplitudes(1j * omega - rate, 0.5 * np.outer(c * load, envelope), unit_s) for rate, c, load in pairs]
     width = max(part.shape[1] for part in parts)
     forward, backward = (np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
     return Forced(forward=forward, backward=backward, omega=omega, origin=origin, unit_s=unit_s)

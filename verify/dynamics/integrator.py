@@ -31,27 +31,30 @@ what contact adds by the end is added in mid-step."""
 
 @inline(fastmath=FAST)
 def add_powers(
-    when: int, weight: float, time: float, drive: Array, rows: Array, factors: Array, forced: Array, loads: Array,
-    growth: Array, balance: Array,
+    when: int, weight: float, time: float, drive: Array, factors: Array, forced: Array, loads: Array, growth: Array,
+    balance: Array,
 ) -> None:  # fmt: skip
-    """Add the drive's power and the modes' loss, with a weight in seconds, to the balance.
+    """Add the drive's power and the loss of all coordinates, with a weight in seconds, to the balance.
 
-    `forced` (n, drive columns) are the forced parts of the rows over the drive's factors, `loads` (2, n) the
-    generalised force phasors, `growth` their envelope.
+    `forced` are the coordinates over the drive's factors (n, drive columns), added to those of the rows themselves, or
+    with circuits over the factors of all columns (coordinates, columns). `loads` (4, coordinates) are the generalised
+    force phasors, real and imaginary, the damping, and 1 of a circuit; `growth` is the envelope of the forces.
     """
     angle, part, grown = drive[lay.OMEGA] * (drive[lay.ORIGIN] + time), time / drive[lay.UNIT], 0.0
-    c, s, n, first = np.cos(angle), np.sin(angle), rows.shape[1], factors.shape[2] - forced.shape[1]
+    c, s, first = np.cos(angle), np.sin(angle), factors.shape[2] - forced.shape[1]
     for d in range(len(growth) - 1, -1, -1):
         grown = grown * part + growth[d]
-    driven, lost = 0.0, 0.0
-    for j in range(n):
-        rate = factors[when, RATE, j]
+    driven, lost, resisted = 0.0, 0.0, 0.0
+    for j in range(forced.shape[0]):
+        rate = factors[when, RATE, j] if first > 0 else 0.0
         for d in range(forced.shape[1]):
             rate += forced[j, d] * factors[when, RATE, first + d]
         driven += grown * (loads[0, j] * c - loads[1, j] * s) * rate
-        lost -= 2.0 * rows[lay.RATE_RE, j] * rate * rate
+        lost += loads[2, j] * rate * rate
+        resisted += loads[3, j] * loads[2, j] * rate * rate
     balance[lay.DRIVEN] += weight * driven
     balance[lay.LOST] += weight * lost
+    balance[lay.RESISTED] += weight * resisted
 
 
 @jit(no_cpython_wrapper=True)
@@ -277,7 +280,7 @@ def advance(
                 rotate_half(rows)
                 set_factors(when, time + (0.5 * dt if when == HALF else dt), n_complex, rows, drive, factors)
             if accounts:
-                add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, rows, factors, forced, loads,
+                add_powers(when, dt * POWERS[when], time + 0.5 * dt * min(when, 2), drive, factors, forced, loads,
                            growth, balance)  # fmt: skip
         if two_way:
             filter_rates(dt, n_complex, rows, factors)
@@ -309,7 +312,7 @@ def advance(
         if two_way or accounts:
             set_factors(last, time + dt, n_complex, rows, drive, factors)
         if accounts:
-            add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, rows, factors, forced, loads, growth, balance)
+            add_powers(last, dt * POWERS[MIDDLE], time + dt, drive, factors, forced, loads, growth, balance)
         if two_way:
             filter_rates(dt, n_complex, rows, factors)
         shift_factors(factors)

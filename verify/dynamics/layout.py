@@ -64,11 +64,11 @@ on the slider, of the external force or a prescribed speed, of preload and weigh
 impacts; work on the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal
 force, share of points in contact and sticking, displacement of the surface under the points in contact (mean of
 points). The largest friction, N; the largest downward acceleration of the surface, m/s^2; energy of the springs, J."""
-BALANCE = 6
-DRIVEN, LOST, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
-"""Balance (BALANCE,): work of the drive and loss in the modes, J (with ACCOUNTS); energy that friction created, the sum
-of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution did not converge; largest
-residual of a step, N."""
+BALANCE = 7
+DRIVEN, LOST, RESISTED, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
+"""Balance (BALANCE,): work of the drive, loss in modes and circuits, of it in circuits, J (with ACCOUNTS); energy that
+friction created, the sum of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution
+did not converge; largest residual of a step, N."""
 
 OUT = 9
 OUT_X, OUT_V, OUT_FRICTION, OUT_NORMAL, OUT_TOUCH, OUT_STUCK, OUT_LOSS, OUT_ALONG, OUT_SURFACE = range(OUT)

@@ -2,23 +2,23 @@
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, modal_rows
+from verify.dynamics.circuits import rows_on
+from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, interleaved
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
 from verify.problem.beam import Beam, PointLoad, PointMoment
 
-if TYPE_CHECKING:
-    from verify.linear.field import HarmonicField
-
+NO_READINGS = np.empty((1, 0), dtype=complex)
 EXACT_DEGREE = 8
 """Degree of the polynomials for the exact steady field on pieces of 0.3 rad of its waves: error is rounding."""
 
@@ -72,6 +72,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     steps: Steps
     complex_rows: int = 0
     """Number of rows with complex psi, which are the last ones."""
+    readings: ComplexArray = NO_READINGS
+    """(powers of t, outputs): shapes of the drive for the outputs `rows.readings`."""
     ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
     """Messages for a slider beyond the first edge, and beyond the last."""
 
@@ -91,8 +93,18 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         The drive has two columns for each power of t, real and imaginary part.
         """
         psi = self.shapes(x, derivative)
+        return self._columns(psi, self.field(x, derivative, psi))
+
+    def outputs(self, x: Array) -> Array:
+        """Columns of the deflection at x and of the readings, (columns, len(x) + readings)."""
+        if not self.readings.size:
+            return self.columns(x)
+        psi = self.rows.readings.reshape(len(self.rows.rates), self.readings.shape[1])
+        return np.hstack([self.columns(x), self._columns(psi, self.readings)])
+
+    def _columns(self, psi: Any, drive: ComplexArray) -> Array:
         imaginary = psi[len(psi) - self.complex_rows :].imag
-        return np.concatenate([psi.real, imaginary, interleaved(self.field(x, derivative, psi).T).T])
+        return np.concatenate([psi.real, imaginary, interleaved(drive.T).T])
 
     def factors(self, z: ComplexArray, t: Array) -> Array:
         """Factors of the columns at times t, (len(t), columns), for free rows z (len(t), n).
@@ -121,8 +133,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
-        """Deflection in closed form, (len(t), len(x)), m: free rows from z at t = 0, and the drive."""
-        return np.asarray(self.factors(self.rows.after(z, t), t) @ self.columns(x))
+        """Deflection (m) and readings in closed form, (len(t), outputs): free rows from z at t = 0, and the drive."""
+        return np.asarray(self.factors(self.rows.after(z, t), t) @ self.outputs(x))
 
     def free(self, z: ComplexArray) -> ComplexArray:
         """Free part at the start of a motion with total state z, (n,)."""
@@ -149,11 +161,6 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return replace(self, steps=cut(self.duration, longest, closer * (self.steps.n // self.steps.every)))
 
 
-def interleaved(amplitudes: ComplexArray) -> Array:
-    """Alternate real and imaginary parts, (n, k) complex -> (n, 2 k)."""
-    return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
-
-
 def basis_of(
     beam: Beam,
     model: str,
@@ -174,9 +181,10 @@ def stages_from_rest(
     damping: Ratio,
     pieces: Sequence[Growth],
     origin: float,
+    circuits: Sequence[Mounted] = (),
 ) -> list[Stage]:
     """One stage per piece of the envelope, with the quasi-static response of truncated modes."""
-    rows, stages = modal_rows(basis, forces, damping), []
+    rows, stages = rows_on(basis, forces, damping, circuits, omega), []
     tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail and forces else None
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
@@ -191,8 +199,10 @@ def stages_from_rest(
 
         stages.append(
             Stage(
-                rows=rows, forced=forced, shapes=basis.shapes, field=field, edges=_to_the_end(basis.edges, basis.beam),
-                degree=basis.degree, omega=omega, origin=origin, unit_s=unit, envelope=envelope, steps=piece.steps,
+                rows=rows, forced=forced, shapes=rows.shapes(basis), field=field,
+                edges=_to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=omega, origin=origin,
+                unit_s=unit, envelope=envelope, steps=piece.steps, complex_rows=len(rows.rates) * bool(circuits),
+                readings=forced.drive_shapes(rows.readings) if circuits else NO_READINGS,
             )
         )  # fmt: skip
         origin += unit
@@ -200,9 +210,11 @@ def stages_from_rest(
 
 
 def steady_stage(
-    harmonic: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio
-) -> Stage:
+    state: ActuatedBeam, steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio,
+    circuits: Sequence[Mounted] = (),
+) -> Stage:  # fmt: skip
     """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
+    harmonic = state.field
     beam, degree = harmonic.beam, 3
     if harmonic.edges is not None:
         edges = harmonic.edges
@@ -221,9 +233,15 @@ def steady_stage(
         higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
         return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
 
-    edges = _to_the_end(edges, harmonic.beam)
-    stage = Stage(field=field, edges=edges, degree=degree, omega=harmonic.omega, origin=origin, steps=steps)
-    return replace(stage, rows=modal_rows(basis, (), damping), shapes=basis.shapes) if basis else stage
+    steady = [one.voltage for one in state.actuators] + [one.current / (1j * harmonic.omega) for one in state.actuators]
+    stage = Stage(
+        field=field, edges=_to_the_end(edges, beam), degree=degree, omega=harmonic.omega, origin=origin, steps=steps,
+        readings=np.array([steady], dtype=complex),
+    )  # fmt: skip
+    if basis is None:
+        return stage
+    rows = rows_on(basis, (), damping, circuits, harmonic.omega)
+    return replace(stage, rows=rows, shapes=rows.shapes(basis), complex_rows=len(rows.rates) * bool(circuits))
 
 
 def _to_the_end(edges: Array, beam: Beam) -> Array:
@@ -232,13 +250,17 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
 
 
 @lru_cache(maxsize=8)  # of all windows of a motor at a fixed position
-def damped_field(
-    model: str, count: int | None, beam: Beam, forces: tuple[PointLoad, ...], hertz: float, damping: float | None
-) -> "HarmonicField":
-    """The steady field of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
+def steady_beam(
+    model: str, count: int | None, beam: Beam, forces: tuple[PointLoad, ...], hertz: float, damping: float | None,
+    circuits: tuple[Mounted, ...] = (),
+) -> ActuatedBeam:  # fmt: skip
+    """The steady state of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
         # the exact field has no modes: a loss factor of twice the ratio is equivalent
         modal_damping = damping if kind.sized else 0.0
         beam = replace(beam, loss_factor=0.0 if kind.sized else 2.0 * damping)
-    return kind.build(beam, count).harmonic(forces, hertz, modal_damping=modal_damping)
+    built = kind.build(beam, count)
+    if circuits:
+        return on_beam(built, circuits, hertz, forces=forces, modal_damping=modal_damping)
+    return ActuatedBeam(field=built.harmonic(forces, hertz, modal_damping=modal_damping), actuators=())

@@ -8,7 +8,9 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
+from verify.dynamics.circuits import check_circuits
 from verify.dynamics.contact_assembly import check_sliders
 from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping
 from verify.dynamics.linear_system import Growth, Stage, cut
@@ -60,6 +62,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     pieces: tuple[Growth, ...]
     step: float | None
     before: EndState | None
+    circuits: tuple[Mounted, ...] = ()
 
     @property
     def omega(self) -> float:
@@ -107,12 +110,16 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             beam=self.beam, model=self.model, count=self.count, time=time, q=q, rates=rates, steady=steady, **contact
         )
 
+    def split(self, outputs: Array) -> list[Array]:
+        """Deflections (n, p), voltages and charges (n, circuits) of outputs (n, p + 2 circuits)."""
+        return np.split(outputs, [len(self.points), len(self.points) + len(self.circuits)], axis=1)
+
     def continued(self, stage: Stage) -> Any:
         """Total state z at the end of the earlier run. Raises InputError for other modes."""
-        before, n = self.before, len(stage.rows.rates)
+        before, sizes = self.before, stage.rows.sizes
         assert before is not None
-        if len(before.q) != n:
-            raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
+        if (n := len(before.q)) not in sizes:
+            raise InputError(f"continue_from has {n} modes and this run {sizes[0]}: give both the same modes")
         return stage.rows.of_state(before.q, before.rates)
 
 
@@ -120,7 +127,7 @@ def request_of(
     beam: Beam, forces: Any, frequency_hz: float, duration: float, *, model: str, count: int | None, modes: int | None,
     start: str | None, soft_start_periods: float, envelope: Envelope, modal_damping: float | None, slider: Any,
     prescribed_speed: Any, fixed_position: Any, at: Any, samples: int, step: float | None,
-    steps_per_period: int | None, continue_from: Any,
+    steps_per_period: int | None, continue_from: Any, circuits: Any = (),
 ) -> Request:  # fmt: skip
     """A validated request; arguments as in `simulate`. Raises InputError."""
     check_frequency("frequency_hz", frequency_hz, beam)
@@ -128,8 +135,9 @@ def request_of(
     check_integer("samples", samples, 2, MOST_SAMPLES)
     check_damping(beam, modal_damping)
     kind, sliders = MODELS.named(model), () if slider is None else as_tuple("slider", slider, Slider)
-    driven = loads_on(beam, forces, PointLoad)
-    if not driven and not sliders:
+    driven, electrical = loads_on(beam, forces, PointLoad), as_tuple("circuits", circuits, Mounted)
+    check_circuits(beam, electrical, 2.0 * np.pi * frequency_hz)
+    if not driven and not sliders and not electrical:
         raise InputError("forces is empty: give at least one PointForce")
     feet, two_way = (bool(sliders) and sliders[0].contact is not None), (sliders and sliders[0].coupling == "two-way")
     start = ("steady" if feet else "rest") if start is None else start
@@ -171,6 +179,7 @@ def request_of(
         pieces=_cut(duration, grown, longest, samples - 1),
         step=step,
         before=before,
+        circuits=electrical,
     )
 
 

@@ -11,7 +11,7 @@ from verify.problem.slider import Slider
 
 END = "end"
 """Value of `Statistics.stopped` of a complete run."""
-NONE, NO_EVENTS, NAN = np.empty(0), np.empty((0, 4)), float("nan")
+NONE, NO_EVENTS, NO_CIRCUITS, NAN = np.empty(0), np.empty((0, 4)), np.empty((0, 0)), float("nan")
 
 
 class Statistics(Struct, frozen=True, kw_only=True):
@@ -46,15 +46,15 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Energies and works over a run, J. Works are positive where they add energy, losses where they remove it."""
 
     kinetic: float
-    """Gain of kinetic energy of the beam's free modes."""
+    """Gain of kinetic energy of the beam's free modes, and of the energy of inductances."""
     elastic: float
-    """Gain of elastic energy of the beam's free modes."""
+    """Gain of elastic energy of the beam's free modes, and of the energy of capacitances."""
     slider: float
     """Gain of kinetic energy of sliders and feet, along and across the beam."""
     contact_elastic: float
     """Gain of elastic energy of normal and tangential contact springs."""
     drive_work: float
-    """Work of the driving forces; 0 in a steady field, whose drive is not computed."""
+    """Work of driving forces and sources; 0 in a steady field, whose drive is not computed."""
     load_work: float
     """Work of weight, preload, `slider.external_force` and of the force that prescribes a speed."""
     tangential_work: float
@@ -66,6 +66,8 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     only friction and `slider.external_force` move a slider."""
     damping_loss: float
     """Loss by damping in the beam."""
+    circuit_loss: float = 0.0
+    """Loss in the resistances of circuits."""
     friction_loss: float
     contact_loss: float
     """Loss in contact dashpots and impacts."""
@@ -105,7 +107,8 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     time: float
     """Time since the start of the first run, s."""
     q: Array
-    """(n,), sqrt(kg) m: modal amplitudes with their forced part; with start = 'steady' without the steady field."""
+    """(n,), sqrt(kg) m: modal amplitudes with their forced part; with start = 'steady' without the steady field. The
+    charges of circuits follow, C."""
     rates: Array
     """(n,), dq/dt."""
     steady: bool = False
@@ -152,6 +155,10 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """(p,), m: positions of the deflection."""
     deflection: Array
     """(n, p), m."""
+    voltages: Array = NO_CIRCUITS
+    """(n, circuits), V across the actuators."""
+    charges: Array = NO_CIRCUITS
+    """(n, circuits), C on their electrodes; the current is the rate."""
     slider: Slider | tuple[Slider, ...] | None = None
     start: float | tuple[float, ...] | None = None
     """Initial position, m from the left end."""

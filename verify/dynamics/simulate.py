@@ -6,9 +6,10 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
+from verify.actuators.on_beam import Mounted
 from verify.dynamics.excitation import check_no_resonance
 from verify.dynamics.free_vibration import FreeVibration
-from verify.dynamics.linear_system import Stage, basis_of, damped_field, stages_from_rest, steady_stage
+from verify.dynamics.linear_system import Stage, basis_of, stages_from_rest, steady_beam, steady_stage
 from verify.dynamics.request import Envelope, Request, request_of
 from verify.dynamics.result import END, Motion, Statistics
 from verify.dynamics.slider_run import SliderRun
@@ -45,6 +46,7 @@ def simulate(
     step: float | None = None,
     steps_per_period: int | None = None,
     continue_from: Motion | FreeVibration | None = None,
+    circuits: Mounted | Sequence[Mounted] = (),
     progress: Progress = lambda part: None,
 ) -> Motion:
     """A driven beam from rest or in its steady state, with or without sliders in contact.
@@ -92,6 +94,10 @@ def simulate(
         the doubled step (`statistics.step_change`).
     continue_from : Motion or FreeVibration, optional
         A run that this one continues, with the same `start`, and position and speed of the sliders.
+    circuits : Mounted or sequence
+        Actuators with electrical loads, and sources behind them at `frequency_hz`, whose springs and masses are part of
+        the beam (`verify.actuators.on_beam.beam_in_time`); their voltages and charges are results. Without an earlier
+        run charges start in equilibrium.
     progress : callable
         Called with the completed fraction.
 
@@ -110,12 +116,13 @@ def simulate(
         beam, forces, frequency_hz, duration, model=model, count=count, modes=modes, start=start,
         soft_start_periods=soft_start_periods, envelope=envelope, modal_damping=modal_damping, slider=slider,
         prescribed_speed=prescribed_speed, fixed_position=fixed_position, at=at, samples=samples, step=step,
-        steps_per_period=steps_per_period, continue_from=continue_from,
+        steps_per_period=steps_per_period, continue_from=continue_from, circuits=circuits,
     )  # fmt: skip
     basis = None
     if request.start == "rest" or request.two_way:
         line = request.sliders[0].line if request.sliders else "spline"
-        basis = basis_of(beam, model, count, request.modes, line, request.forces)
+        ports = [load for one in request.circuits for load in one.loads(beam)]
+        basis = basis_of(beam, model, count, request.modes, line, [*request.forces, *ports])
     stages = _stages(request, basis)
     if not request.sliders:
         motion = _closed_form(request, stages, request.notes(basis))
@@ -131,12 +138,14 @@ def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
     origin, damping = request.before.time if request.before else 0.0, request.damping_in(basis)
     if request.start == "rest":
         assert basis is not None
-        check_no_resonance(basis, request.frequency_hz, damping)
-        return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin)
-    field = damped_field(
-        request.model, request.count, request.beam, request.forces, request.frequency_hz, request.modal_damping
-    )
-    return [steady_stage(field, request.pieces[-1].steps, origin, basis, damping)]
+        if not request.circuits:
+            check_no_resonance(basis, request.frequency_hz, damping)
+        return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin, request.circuits)
+    state = steady_beam(
+        request.model, request.count, request.beam, request.forces, request.frequency_hz, request.modal_damping,
+        request.circuits,
+    )  # fmt: skip
+    return [steady_stage(state, request.pieces[-1].steps, origin, basis, damping, request.circuits)]
 
 
 def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) -> Motion:
@@ -151,12 +160,15 @@ def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) 
         whole = stage.whole(stage.rows.after(z, stage.duration), stage.duration)
     times = np.concatenate([[first.origin], *(stage.origin + stage.sample_times for stage in stages)])
     margins, seconds = margins_of(request, stages[-1]), perf_counter() - began
+    deflection, voltages, charges = request.split(np.concatenate(parts))
     return Motion(
         model=request.model,
         count=request.count,
         times=times,
         points=request.points,
-        deflection=np.concatenate(parts),
+        deflection=deflection,
+        voltages=voltages,
+        charges=charges,
         margins=margins,
         notes=notes,
         statistics=Statistics(steps=0, evaluations=len(times), step_s=0.0, set_up_s=0.0, wall_s=seconds, stopped=END),

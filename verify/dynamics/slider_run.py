@@ -33,7 +33,7 @@ WORKS = {
     "friction_loss": lay.DISSIPATED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
 }  # fmt: skip
 """Column of the engine's sums by term of `EnergyBalance`."""
-SAMPLED = ("times", "deflection", "height", "pitch", "pressures", *COLUMNS)
+SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *COLUMNS)
 Progress = Callable[[float], None]
 
 
@@ -179,6 +179,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             kept[0, still, lay.OUT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
         heights = np.concatenate([heights, recorded.heights])
+        deflection, voltages, charges = request.split(np.concatenate([deflection, recorded.deflections]))
         steps = recorded.n_steps
         for stage in stages:
             if steps <= stage.steps.n:
@@ -205,7 +206,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             count=request.count,
             times=np.concatenate([[stages[0].origin], *(s.origin + s.sample_times for s in stages)])[: n + 1],
             points=request.points,
-            deflection=np.concatenate([deflection, recorded.deflections]),
+            deflection=deflection,
+            voltages=voltages,
+            charges=charges,
             slider=request.sliders if self.sequence else request.sliders[0],
             start=request.starts if self.sequence else request.starts[0],
             **{name: each(kept[:, :, column]) for name, column in COLUMNS.items()},
@@ -247,23 +250,16 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     ) -> tuple[Run, Array, tuple[float, float, float], bool]:
         """March beam and sliders to the end.
 
-        Returns the run, the initial deflection (1, p), m, the beam's gains of kinetic and elastic energy and its
-        initial energy, J, and whether the work of the drive and the loss in the beam are computed.
+        Returns the run, the initial deflection (1, p), m, with readings, the beam's gains of kinetic and elastic energy
+        and its initial energy, J, and whether the work of the drive and the loss in the beam are computed.
         """
-
-        def energies(rows: Stage, z: ComplexArray) -> tuple[float, float]:
-            if self.basis is None:
-                return 0.0, 0.0
-            q, rates = rows.rows.state(z)
-            return 0.5 * float(rates @ rates), 0.5 * float((self.basis.omegas**2 * q) @ q)
-
         n_steps, points = sum(stage.steps.n for stage in stages), self.request.points
         # impacts do not act on the beam: its balance is exact
         rest = self.request.start == "rest" and contacts.restitution is None
-        kinetic, elastic = energies(stages[0], stages[0].whole(z, 0.0))
+        kinetic, elastic = stages[0].rows.energies(stages[0].whole(z, 0.0))
         deflection = stages[0].deflection(z, np.zeros(1), points)
         recorded = run_stages(stages, z, contacts, points, accounts=rest, progress=lambda n: progress(n / n_steps))
-        after = energies(stages[-1], recorded.z)
+        after = stages[-1].rows.energies(recorded.z)
         return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
 
     def _kinetic(self, contacts: Contacts) -> float:
@@ -282,7 +278,7 @@ def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: b
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
     work = s[lay.ACROSS] + s[lay.ALONG] + s[lay.SLOPE_WORK] + s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
     residual = work - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
-    driven, lost = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST))
+    driven, lost, resisted = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST, lay.RESISTED))
     beam = driven + (s[lay.ON_BEAM] + s[lay.LIFTED_BEAM]) * two_way - lost - kinetic - elastic
     return EnergyBalance(
         kinetic=kinetic,
@@ -291,7 +287,8 @@ def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: b
         contact_elastic=stored,
         drive_work=driven,
         load_work=float(s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]),
-        damping_loss=lost,
+        damping_loss=lost - resisted,
+        circuit_loss=resisted,
         **{name: float(s[column]) for name, column in WORKS.items()},
         initial=initial,
         created=float(recorded.balance[lay.GAINED_ENERGY]),

@@ -48,7 +48,7 @@ def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: floa
         driven = np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers)
     else:
         x = np.linspace(0.0, length, 129)
-        first = np.sqrt((last.shapes(x, 0)[0] ** 2).mean())
+        first = np.sqrt((abs(last.shapes(x, 0)[0]) ** 2).mean())
         driven = np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first
     missed = free * np.minimum((0.5 * turning * dt) ** 4 / 180.0, 1.0)
     total = np.hypot(last.omega * driven, np.linalg.norm(free))

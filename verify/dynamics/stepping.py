@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
-from verify.dynamics.linear_system import Stage, interleaved
+from verify.dynamics.linear_system import Stage
 
 CHUNK = 20_000
 """Number of steps between checks for an interrupt."""
@@ -91,7 +91,7 @@ class Run:
         """`first`: speed; for points without feet also friction and surface speed."""
         self.heights, self.pressures = np.zeros((samples, n_feet, 2)), np.zeros((samples, n))
         """Heights and pitches of the feet; normal forces of the points."""
-        self.deflections = np.zeros((samples, len(places)))
+        self.deflections = np.zeros((samples, len(places) + stages[0].readings.shape[1]))
         self.events, self.n_events = np.zeros((EVENTS, 4)), 0
         """Events (time, kind, point, distance travelled); total number, also beyond the capacity."""
         self.sums, self.before = np.zeros((n_sliders, lay.SUMS)), np.zeros((n_sliders, lay.SUMS))
@@ -128,13 +128,12 @@ class Run:
 
         began, contacts, n = thread_time(), self.contacts, len(z)
         rows, drive = rows_of(stage, z), np.array([stage.omega, stage.origin, stage.unit_s], dtype=float)
-        places = np.ascontiguousarray(stage.columns(self.places).T) if len(self.places) else np.zeros((0, 0))
+        places = np.ascontiguousarray(stage.outputs(self.places).T) if self.deflections.shape[1] else np.zeros((0, 0))
         columns = stage.columns(stage.edges[:1]).shape[0]
         own = n + stage.complex_rows
-        forced, loads = np.zeros((n, columns - own)), np.array([stage.rows.loads.real, stage.rows.loads.imag])
-        growth = np.zeros(0)
+        forced, loads, growth = np.zeros((0, columns - own)), np.zeros((4, 0)), np.zeros(0)
         if self.accounts and stage.forced is not None:
-            forced[:] = interleaved(stage.forced.forward + stage.forced.backward)
+            forced, loads = stage.rows.accounts(stage.forced)
             growth = np.array(stage.envelope, dtype=float)
         codes = np.zeros(lay.CODES, dtype=np.int64)
         codes[[lay.LAW, lay.TWO_WAY]] = contacts.law, contacts.two_way
@@ -246,7 +245,7 @@ class Run:
         row, (x, speed) = int(self.tally[lay.SAMPLES]), self.contacts.sliders[:, [lay.X, lay.V]].T
         rows, since = slice(row, row + len(rest)), np.asarray((rest - begun) * dt, dtype=float)
         free = stage.rows.after(self.z, since)
-        self.deflections[rows] = stage.factors(free, since + begun * dt) @ stage.columns(self.places)
+        self.deflections[rows] = stage.factors(free, since + begun * dt) @ stage.outputs(self.places)
         self.samples[rows, :, lay.OUT_X] = x + np.multiply.outer(since, speed)
         self.samples[rows, :, lay.OUT_V] = speed
         self.contacts.sliders[:, lay.X] += (stage.steps.n - begun) * dt * speed

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.linear_system import Stage, damped_field
+from verify.dynamics.linear_system import Stage, steady_beam
 from verify.linear.field import lossless_wavenumber, travelling_wavenumber
 from verify.linear.surface import section_at
 from verify.linear.time_basis import Ratio, TimeBasis
@@ -101,7 +101,7 @@ def field_receptance(
 
     def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
         forces = (PointForce(position=x),), couple(beam, x, frequency_hz)
-        fields = [damped_field(model, count, beam, some, frequency_hz, damping) for some in forces]
+        fields = [steady_beam(model, count, beam, some, frequency_hz, damping).field for some in forces]
         return fields[0].deflection(places), fields[1].slope(places)
 
     return receptance

@@ -113,8 +113,8 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
 def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     if scene.motion is None:
         raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
-    if also := scene.beside:
-        raise InputError(f"what = 'motion': motion in time does not model {also}, leave {also} out")
+    if scene.devices:
+        raise InputError("what = 'motion': motion in time does not model drive.device, leave drive.device out")
     arguments = motion_arguments(scene, TimeOptions(model=request.model, count=count))
     if scene.slider is not None:
         arguments |= {"slider": scene.slider, "steps_per_period": scene.motion.steps_per_period}

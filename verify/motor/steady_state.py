@@ -19,8 +19,9 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import asdict
 
+from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
-from verify.dynamics.linear_system import damped_field
+from verify.dynamics.linear_system import steady_beam
 from verify.dynamics.request import FEET_STEPS_PER_PERIOD
 from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
@@ -63,6 +64,7 @@ class MotorCase(Struct, frozen=True, kw_only=True):
     soft_start_periods: float = 0.0
     modal_damping: float | None = None
     steps_per_period: int = FEET_STEPS_PER_PERIOD
+    circuits: tuple[Mounted, ...] = ()
 
     @property
     def period(self) -> float:
@@ -82,7 +84,8 @@ class MotorCase(Struct, frozen=True, kw_only=True):
 @lru_cache(maxsize=16)
 def surface_motion(case: MotorCase) -> tuple[float, float]:
     """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) at the slider's position, without slider."""
-    field = damped_field(case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping)
+    settings = case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping
+    field = steady_beam(*settings, case.circuits).field
     x = case.slider.initial_position(case.beam)
     tangential = section_at(case.beam, x).surface_distance * field.omega
     return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])

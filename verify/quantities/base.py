@@ -41,6 +41,10 @@ TABLES = ("beam", "drive", "slider", "motion")  # tables of a scene that a quant
 ROUNDING = 1e-12  # tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)
 
 
+UNITS = {"resistance": "ohm", "inductance": "H", "capacitance": "F", "peak": "1", "loss_factor": "1"}
+"""Unit of a quantity with several figures by the argument that names the figure."""
+
+
 class Quantity:
     """A named quantity of interest. `@quantity` makes and registers it."""
 
@@ -111,10 +115,17 @@ class Quantity:
         }
         return values | groups
 
+    def unit_of(self, arguments: Mapping[str, Any]) -> str:
+        """Its unit; where that depends on an argument as resistance or inductance, the unit for these arguments."""
+        values = {one.name: one.default for one in msgspec.structs.fields(self.schema)} | dict(arguments)
+        units = [UNITS[value] for value in values.values() if isinstance(value, str) and value in UNITS]
+        return units[0] if units and " or " in self.unit else self.unit
+
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
         bound = self.bind(arguments)
-        if not self.devices and "beam" in self.reads and (also := scene.beside):
+        accepts = [name for one in self._groups.values() for name in getattr(one, "accepts", ())]
+        if not self.devices and "beam" in self.reads and (also := scene.beside) and also not in accepts:
             at = scene.devices[0].position if scene.devices else scene.shunts[0][0]
             raise InputError(
                 f"quantity = {self.name!r} does not model {also}, and the scene has one at {at:g} m: leave {also} out, "

@@ -8,6 +8,7 @@ from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.actuators.patch import Patch
+from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.quantities import options as opt
 from verify.quantities.actuator import scene_actuator
@@ -23,16 +24,21 @@ Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.
 
 
 def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
-    """(port of the scene's actuator, rad/s)."""
-    actuator = scene_actuator(scene)
+    """(port of the scene's transducer, rad/s)."""
     omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
-    return (actuator.bonded(scene.beam) if isinstance(actuator, Patch) else actuator).port(omega), omega
+    return scene_actuator(scene, Longitudinal).port(omega), omega
 
 
 @quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
 def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -> float:
-    """Magnitude of the blocked force of an actuator per volt; of a patch, N m/V."""
+    """Magnitude of the blocked force of an actuator per volt."""
     return abs(complex(_port(scene, frequency_hz)[0].force_factor))
+
+
+@quantity("drive.moment_per_volt", unit="N m/V", reads=DRIVEN, devices=True)
+def moment_per_volt(scene: Scene) -> float:
+    """Magnitude of the bending moment of a patch per volt."""
+    return abs(scene_actuator(scene, Patch, "patch").bonded(scene.beam).moment_per_volt)
 
 
 @quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)

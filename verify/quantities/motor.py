@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from operator import attrgetter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import msgspec
 from msgspec import Meta
@@ -23,6 +23,7 @@ Speed = Annotated[float, unit("m/s"), Meta(description="prescribed speed of the 
 class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
     """Beam model and time steps of a motor."""
 
+    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
     theory: opt.TimeTheory = "euler-bernoulli"
@@ -40,7 +41,8 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
         hertz = opt.drive_frequency(scene)
         there = scene.in_time(opt.DriveOptions().forces(scene), hertz)
-        return MotorCase(beam=there.beam, forces=there.loads, frequency_hz=hertz, slider=scene.slider, **settings)
+        settings |= {"slider": scene.slider, "circuits": there.circuits}
+        return MotorCase(beam=there.beam, forces=there.loads, frequency_hz=hertz, **settings)
 
 
 def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any) -> Any:

@@ -83,7 +83,7 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tupl
     return port, end, absorbing_load(port, end.matched, omega), omega
 
 
-@quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"))
+@quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"), devices=True)
 def absorber(
     scene: Scene,
     *,
@@ -95,7 +95,7 @@ def absorber(
     return _part(_absorber(scene, position, frequency_hz)[2], figure)
 
 
-@quantity("shunt.reflection", unit="1", reads=("beam", "drive"))
+@quantity("shunt.reflection", unit="1", reads=("beam", "drive"), devices=True)
 def reflection(
     scene: Scene,
     *,

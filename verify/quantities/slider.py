@@ -1,6 +1,6 @@
 """Quantities in time: a slider on the driven beam, energy balance and coupling, and the beam without slider."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Meta
@@ -29,6 +29,7 @@ SOFT_START_PERIODS = 2.0
 class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
     """Drive and time integration of the driven beam."""
 
+    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
     theory: opt.TimeTheory = "euler-bernoulli"
@@ -82,7 +83,7 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
     there = scene.in_time(forces, hertz)
     driven = {"beam": there.beam, "forces": there.loads, "frequency_hz": hertz, "duration": time}
-    return {**driven, **own, "modal_damping": damping}
+    return {**driven, **own, "modal_damping": damping, "circuits": there.circuits}
 
 
 def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -> "Motion":
@@ -253,7 +254,8 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
 
     arguments, beam = motion_arguments(scene, by), scene.beam
     hertz = arguments["frequency_hz"]
-    check_span(beam, [force.position for force in arguments["forces"]], window)
+    electrical = [load for one in arguments["circuits"] for load in one.loads(arguments["beam"])]
+    check_span(beam, [one.position for one in (*arguments["forces"], *electrical)], window)
     check_waves(beam, hertz, window)
     x = positions_on("window", np.linspace(*window, POINTS), beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1

@@ -17,6 +17,7 @@ THINNEST, THICKEST = 0.10, 0.34
 """Drawn thickness of sections, inches."""
 LETTER, ROW = 0.078, 0.17
 """Width of a character and height of a row of text, inches."""
+ELECTRICAL = ("voltage", "current")
 DEVICE_UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotational_dashpot": "N m s"}
 DEVICE_UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "amplitude": "N"}
 
@@ -27,7 +28,9 @@ def beam_figure(scene: Any) -> Figure:
 
     sketch = _Sketch(scene, MatplotlibFigure().subplots())
     beam = scene.beam
-    counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, "forces": scene.forces}
+    kind = scene.drive.kind if scene.drive is not None else "force"
+    what = "actuators" if kind in ELECTRICAL else f"{kind}s"
+    counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, what: scene.forces}
     counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
@@ -72,13 +75,20 @@ class _Sketch:
         for x, load in scene.shunts:
             parts = (("resistance", "Ω"), ("inductance", "H"), ("capacitance", "F"))
             words = [f"{value:.4g} {u}" for name, u in parts if (value := getattr(load, name)) is not None]
-            self.dashpot(self.at(x), self.half(x), words)
-        unit = DRIVE_UNITS[scene.drive.kind] if scene.drive is not None else "N"
+            self.actuator(scene.drive.actuator, x, self.half(x), [f"shunt, x = {_length(x)}", *words], SPRING)
+        kind = scene.drive.kind if scene.drive is not None else "force"
         for force in scene.forces:
             phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
             x, y = self.at(force.position), self.half(force.position) + self.load(scene, force.position)
-            self.arrow((x, y + 0.6), (x, y + 0.03), FORCE)
-            self.text(x, y + 0.64, [f"x = {_length(force.position)}", f"{force.amplitude:.4g} {unit}{phase}"])
+            words = [f"x = {_length(force.position)}", f"{force.amplitude:.4g} {DRIVE_UNITS[kind]}{phase}"]
+            if kind in ELECTRICAL:
+                self.actuator(scene.drive.actuator, force.position, y, words, FORCE)
+                continue
+            if kind == "moment":
+                self.line((x, y + 0.2), color=FORCE, width=0.0, marker="$↺$", markersize=16.0)
+            else:
+                self.arrow((x, y + 0.6), (x, y + 0.03), FORCE)
+            self.text(x, y + (0.4 if kind == "moment" else 0.64), words)
         if scene.drive is not None:
             self.text(0.5 * WIDTH, self.top, [f"drive at {scene.drive.frequency_hz:g} Hz"])
 
@@ -184,6 +194,20 @@ class _Sketch:
             self.line((x, y + 0.11), width=0.0, marker="o", markersize=15.0)
             values = ((mass.mass, "kg"), (mass.rotary_inertia, "kg m²"))
             self.text(x, y + 0.26, [f"{value:.4g} {unit}" for value, unit in values if value])
+
+    def actuator(self, design: Any, position: float, y: float, words: list[str], color: str) -> None:
+        """A patch on its sides of the beam, to scale along it; else a column of layers between beam and base."""
+        x, tall = self.at(position), 0.42
+        if hasattr(design, "sides"):
+            tall, length = 0.09, self.at(design.length) - EDGE
+            for low in (y, -self.half(position) - tall)[: design.sides]:
+                self.box(x - 0.5 * length, low, length, tall, color)
+        else:
+            self.box(x - 0.09, y, 0.18, tall, color, alpha=0.4)
+            for i in range(1, 7):
+                self.line((x - 0.09, y + tall * i / 7), (x + 0.09, y + tall * i / 7), color=color, width=0.8)
+            self.line((x - 0.15, y + tall), (x + 0.15, y + tall), color=SOFT)
+        self.text(x, y + tall + 0.05, words)
 
     def dashpot(self, x: float, y: float, words: list[str]) -> None:
         self.line((x, y), (x, y + 0.24), color=SPRING)

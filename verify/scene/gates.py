@@ -36,7 +36,7 @@ def run_gate(gate: Gate, scene: Scene, cache: "SolutionCache") -> GateResult:
     start = perf_counter()
     unit, value, fraction = "", None, None
     try:
-        unit = QUANTITIES.named(gate.quantity).unit
+        unit = QUANTITIES.named(gate.quantity).unit_of(gate.arguments)
         value = evaluate(gate.quantity, gate.arguments, scene, cache)
         reason, fraction = _verdict(gate, value)
     except InputError as error:

@@ -90,7 +90,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     actuator: Transducer | Patch | None = None
     """Design of all actuators, for `kind` voltage or current and for shunts: stack, bar-33, bar-31, langevin, patch."""
     shunt: tuple[SceneShunt, ...] = ()
-    """Passive actuators with an electrical load: in the steady state only."""
+    """Passive actuators with an electrical load."""
     device: tuple[SceneDevice, ...] = ()
     """Impedances on the beam beside the forces, absorbing or driving: in the steady state only."""
 
@@ -266,7 +266,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             yield from error.sentences
             return
         for name, study in (self.studies | dict(studies_of(self))).items():
-            if (also := self.beside) and name in self.studies and not study.devices:
+            if (also := self.beside) and name in self.studies and not (study.devices or also in study.accepts):
                 yield f"{also}: [{name}] does not model it, leave out [{name}] or {also}"
             try:
                 study.check(self)
@@ -295,7 +295,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def beside(self) -> str:
-        """The field of the drive that only quantities of the steady wave model: a device or a shunt; else empty."""
+        """The field of the drive that few quantities and studies model: a device or a shunt; else empty."""
         return "drive.device" if self.devices else "drive.shunt" if self.shunts else ""
 
     def in_time(self, forces: tuple[PointForce, ...], frequency_hz: float) -> "BeamInTime":
@@ -303,7 +303,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         from verify.actuators.on_beam import beam_in_time
 
         kind, actuator = (self.drive.kind, self.drive.actuator) if self.drive else ("force", None)
-        return beam_in_time(self.beam, kind, forces, actuator, frequency_hz)
+        return beam_in_time(self.beam, kind, forces, actuator, frequency_hz, self.shunts)
 
     @property
     def bare(self) -> "Scene":

@@ -25,7 +25,8 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     name: ClassVar[str] = ""  # name of its section in a scene and of its key in JSON
     title: ClassVar[str] = ""  # heading on the page
-    devices: ClassVar[bool] = False  # whether it accepts a drive with devices on the beam
+    devices: ClassVar[bool] = False  # whether it accepts a drive with devices and shunts on the beam
+    accepts: ClassVar[tuple[str, ...]] = ()  # those of the two that it accepts otherwise
     files: ClassVar[tuple[str, ...]] = ()  # fields that are paths, relative to the folder of the scene file
 
     @property

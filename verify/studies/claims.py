@@ -72,7 +72,7 @@ def of_scene(claim: "Claim") -> bool:
 
 def unit_of(claim: "Claim") -> str:
     """Unit of its quantity, empty for a ratio. Raises InputError for an unknown quantity."""
-    unit = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit
+    unit = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit_of(claim.arguments)
     return "" if unit == "1" else unit
 
 

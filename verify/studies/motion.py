@@ -66,6 +66,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
     name: ClassVar[str] = "motion"
+    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
     title: ClassVar[str] = "The slider"
 
     duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
@@ -109,8 +110,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         count = self.size(scene, cache)
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
         check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
-        # the springs of actuators are beyond the exact beam in time
-        exact = not scene.in_time(scene.forces, scene.drive.frequency_hz).beam.spring
+        # the springs and sections of actuators are beyond the exact beam in time
+        exact = scene.in_time(scene.forces, scene.drive.frequency_hz).beam == scene.beam
         runs: dict[str, Run] = {}
         for model in (*["analytic"] * exact, *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")

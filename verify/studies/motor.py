@@ -66,6 +66,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
     name: ClassVar[str] = "motor"
+    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
     title: ClassVar[str] = "The motor"
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
@@ -122,7 +123,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         summary += ", " + _with_error("stall force", still.means.force, still.errors.force, "N")
         return Result(
             summary=f"{summary} ({first.name})." if valid else "",
-            tables=[*_tables(fields), *([readings(scene)] if scene.motion and not first.case.beam.spring else [])],
+            tables=[*_tables(fields), *([readings(scene)] if scene.motion and first.case.beam == scene.beam else [])],
             figures=_figures(fields, margins),
             warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
             margins=margins,

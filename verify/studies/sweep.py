@@ -326,7 +326,8 @@ def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -
         ax.figure.colorbar(mesh, ax=ax, label=label)
         ax.grid(False)
         return
-    names = [f"{second[0][0]} = {_label(value)}" for value in second[0][1]] if second else [""]
+    keys = [key.rpartition(".")[2] for key in second[0][0].split(",")] if second else []
+    names = [f"{', '.join(keys)} = {_label(value)}" for value in second[0][1]] if second else [""]
     for name, own in zip(names, values.reshape(len(places[0]), -1).T, strict=True):
         ax.plot(places[0], own, "-o", label=name)
     if np.nanmin(values) > 0.0 and np.nanmax(values) > WIDE * np.nanmin(values):

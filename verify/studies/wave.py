@@ -94,18 +94,24 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             fields[model] = driven(replace(exact, model=MODELS[model].build(exact.beam, n)), cache)
         other = replace(exact, kind="displacement" if exact.kind == "force" and not exact.shunts else "force")
         direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
-        ratio, best = measured(other, cache).standing_wave_ratio, best_drive(exact, direction=direction)
+        against, best = measured(other, cache), best_drive(exact, direction=direction)
+        ratio, end = against.standing_wave_ratio, {1: "+x", -1: "-x"}
 
         columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
         columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
         columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
         columns += [si("crest speed there", "m/s", "+.5g")]
+        columns = columns if (better := any(row["best"] for row in rows)) else columns[:5]
         notes = [
             "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
-            "of the surface at the rms amplitude, against the wave. Right: at its own frequency of least reflection.",
-            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}.",
+            "of the surface at the rms amplitude, against the wave."
+            + " Right: at its own frequency of least reflection."
+            * better,
+            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
+            f"wave towards {end[against.waves.direction]}.",
         ]
         cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
+        cells = [row[: len(columns)] for row in cells]
         size = n if n in counts else max(counts)
         margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
         swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
@@ -121,19 +127,24 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         lines = [(MODELS[m].title, at, abs(field.deflection(at)), model_style(m)) for m, field in fields.items()]
         draw_envelopes = partial(plot_lines, lines=lines, x=("x", "m"), y=("amplitude", "m"))
         envelope = marked(f"Envelope of the wave, N = {n}", margins)
+        reverse = "" if against.waves.direction == direction else f", against that of {other.kind}s of the same phases"
+        reasons: dict[str, list[str]] = {}
+        for row in rows:
+            reasons.setdefault(row["note"], []).append(row["name"])
         ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
         return Result(
-            summary=f"Standing-wave ratio at {drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
+            summary=f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
+            f"{drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
             tables=[
                 Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                _drives(best, exact, exact_swr, "+x" if direction > 0 else "-x"),
+                _drives(best, exact, exact_swr, end[direction]),
             ],
             figures=[
                 Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
                 Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
             ],
             movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
-            warnings=[f"{row['name']}: {row['note']}." for row in rows if row["note"]],
+            warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
             data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
             margins=margins,
         )

@@ -1,13 +1,14 @@
 """A driven beam: model, drive and devices; superposition of the waves of its actuators."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.actuators.on_beam import ActuatedBeam, Mounted, as_moments, on_beam
+from verify.actuators.on_beam import ActuatedBeam, Mounted, as_moments, on_beam, responder
 from verify.actuators.port import Actuator
 from verify.actuators.shunt import Load
 from verify.arrays import Array, ComplexArray
@@ -94,6 +95,18 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         across = [load.position for load in loads if isinstance(load, PointForce)]
         across += [device.position for device in self.passive if device.across]
         return tuple(across), (*turning, *(device.position for device in self.passive if device.turning))
+
+    def units(self, frequency_hz: float) -> Iterator[HarmonicField]:
+        """The fields under the unit amplitude of each force (displacement, voltage). Raises InputError."""
+        at, own = [one.position for one in self.acting], np.eye(len(self.acting)).tolist()
+        drives = [tuple(PointForce(position=x, amplitude=a) for x, a in zip(at, row, strict=True)) for row in own]
+        if not self.electrical:
+            yield from (self.field(forces, frequency_hz) for forces in drives)
+            return
+        self.model.check_propagates(frequency_hz)
+        mounted = [self._mounted(forces) for forces in drives]
+        respond = responder(self.model, mounted[0], frequency_hz, devices=self.passive)
+        yield from (respond(one).field for one in mounted)
 
     def _loads(self, forces: Sequence[PointForce]) -> tuple[PointLoad, ...]:
         """The forces or moments of a drive without actuators."""
@@ -193,12 +206,12 @@ def _unit_responses(case: DrivenCase, frequencies_hz: Array, positions: list[flo
     """Deflection at x, (n, n_a, len(x)), per unit force, or displacement with all others zero; NaN at resonances."""
     if case.kind == "force" and not case.passive and not case.shunts:
         return case.model.receptance(positions, frequencies_hz, x)
-    responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    found = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    # cut here, one system serves all frequencies
+    ports = [load.position for one in case._mounted(case.acting) for load in one.loads(case.beam)]
+    case = replace(case, model=case.model.cut_at([*ports, *case.places[1]]))
     for i, hertz in enumerate(frequencies_hz.tolist()):
-        for j in range(len(positions)):
-            units = tuple(PointForce(position=p, amplitude=float(m == j)) for m, p in enumerate(positions))
-            try:
-                responses[i, j] = case.field(units, hertz).deflection(x)
-            except NoFigureError:
-                break
-    return responses
+        with suppress(NoFigureError):
+            for j, field in enumerate(case.units(hertz)):
+                found[i, j] = field.deflection(x)
+    return found
