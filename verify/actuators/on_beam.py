@@ -134,12 +134,14 @@ def on_beam(
     active device, and ResonanceError at an undamped resonance of the beam without its actuators.
     """
     mounted = as_tuple("actuators", actuators, Mounted)
-    return responder(model, mounted, frequency_hz, forces=forces, devices=devices)(mounted)
+    respond = responder(model, mounted, frequency_hz, forces=forces, devices=devices, modal_damping=modal_damping)
+    return respond(mounted)
 
 
 def responder(
-    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = ()
-) -> Callable[[Sequence[Mounted]], ActuatedBeam]:
+    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = (),
+    modal_damping: float = 0.0,
+) -> Callable[[Sequence[Mounted]], ActuatedBeam]:  # fmt: skip
     """The steady field by the electrical conditions of the actuators, which leave the unit fields as they are."""
     others = loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)
@@ -267,26 +269,25 @@ def beam_in_time(
     if isinstance(actuator, Patch):
         whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
         patch = actuator.bonded(beam)
-        volts = complex(patch.port(omega).force_factor).real
+        volts = patch.moment_per_volt
         pairs = [replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
                  for one in driven
                  for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)]  # fmt: skip
         circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
         return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
-    port, worst, low = actuator.port(omega), 0.0, np.array([0.1, 0.2, 0.3, 1.0])
+    port, worst = actuator.port(omega), 0.0
     places = [(one.position, kind == "current") for one in driven] + [(x, False) for x, _ in shunts]
     for x, opened in dict.fromkeys(places):
-        ports = actuator.port(omega * low)
-        dynamic = 1j * omega * low * (ports.loaded_impedance() if opened else ports.short_impedance)
-        stiffness, mass, _ = np.linalg.solve(np.vander(low[:3] ** 2, increasing=True), dynamic[:3].real).tolist()
-        worst = float(abs(dynamic[3] - (stiffness + mass)) / abs(dynamic[3]))
-        if worst > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
+        stiffness, mass, error = _spring_and_mass(actuator, omega, opened)
+        worst = max(worst, error)
+        if error > QUASI_STATIC or stiffness < 0.0 or mass < 0.0:
             raise InputError(
-                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {worst:.2g} "
+                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} "
                 f"(at most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
             )
-        springs = *beam.spring, PointSpring(position=x, stiffness=stiffness)
-        beam = replace(beam, spring=springs, mass=(*beam.mass, PointMass(position=x, mass=-mass / omega**2)))
+        springs = (PointSpring(position=x, stiffness=stiffness),) if stiffness else ()
+        body = PointMass(position=x, mass=mass)
+        beam = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, body))
     factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
     capacitance = (complex(port.blocked_admittance) / (1j * omega)).real
     own = QuasiStatic(force_factor=complex(port.force_factor).real, capacitance=capacitance)
@@ -296,3 +297,24 @@ def beam_in_time(
         circuits=tuple(Mounted(actuator=own, position=x, load=load) for x, load in shunts),
         error=worst,
     )
+
+
+def _spring_and_mass(actuator: Actuator, omega: float, opened: bool) -> tuple[float, float, float]:
+    """(stiffness, N/m; mass, kg; relative error of their dynamic stiffness at omega), electrodes open or closed."""
+
+    def dynamic(at: Any) -> Any:
+        port = actuator.port(at)
+        return 1j * at * (port.loaded_impedance() if opened else port.short_impedance)
+
+    at = omega
+    while True:
+        steps = at * np.array([0.1, 0.2, 0.3])
+        terms = np.vander((steps / at) ** 2, increasing=True)
+        stiffness, inertia, _ = np.linalg.solve(terms, dynamic(steps).real).tolist()
+        if abs(inertia) > 1e-6 * abs(stiffness):
+            break
+        at *= 10.0  # far below the resonance the mass is lost in rounding
+    if abs(stiffness) < 1e-6 * abs(inertia):  # on a free base
+        stiffness = 0.0
+    mass, exact = -inertia / at**2, complex(dynamic(np.array([omega]))[0])
+    return stiffness, mass, abs(exact - (stiffness - mass * omega**2)) / abs(exact)

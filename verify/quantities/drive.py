@@ -26,7 +26,8 @@ Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.
 def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
     """(port of the scene's transducer, rad/s)."""
     omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
-    return scene_actuator(scene, Longitudinal).port(omega), omega
+    actuator: Longitudinal = scene_actuator(scene, Longitudinal)
+    return actuator.port(omega), omega
 
 
 @quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
@@ -38,7 +39,8 @@ def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -
 @quantity("drive.moment_per_volt", unit="N m/V", reads=DRIVEN, devices=True)
 def moment_per_volt(scene: Scene) -> float:
     """Magnitude of the bending moment of a patch per volt."""
-    return abs(scene_actuator(scene, Patch, "patch").bonded(scene.beam).moment_per_volt)
+    patch: Patch = scene_actuator(scene, Patch, "patch")
+    return abs(patch.bonded(scene.beam).moment_per_volt)
 
 
 @quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)
