@@ -8,6 +8,8 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         their results
   travelling_wave                                              the wave in a field: measure, WaveMeasures
+  Stack, Bar33, Bar31, Langevin, EndMass, Patch                piezoelectric actuators; PiezoMaterial: their ceramic
+  on_beam, Mounted, Load                                       actuators on a driven beam, with electrical loads
   simulate, Motion                                             a driven beam in time, with sliders or alone
   Contact, Foot                                                unilateral contact of sliders, feet of several points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
@@ -26,6 +28,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from verify import travelling_wave
+    from verify.actuators.materials import PiezoMaterial
+    from verify.actuators.on_beam import Mounted, on_beam
+    from verify.actuators.patch import Patch
+    from verify.actuators.shunt import Load
+    from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
     from verify.analytic_modes import ExactModel
     from verify.chain.statics import Bent, bend
     from verify.dynamics.free_vibration import FreeVibration, free_vibration
@@ -46,9 +53,10 @@ if TYPE_CHECKING:
     from verify.travelling_wave import WaveMeasures
 
 __all__ = [
-    "Beam", "Bent", "Contact", "Device", "ExactModel", "Foot", "FreeVibration", "HarmonicField", "HermiteModel",
-    "InputError", "Modes", "Motion", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel",
-    "Slider", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "run_scene", "simulate",
+    "Bar31", "Bar33", "Beam", "Bent", "Contact", "Device", "EndMass", "ExactModel", "Foot", "FreeVibration",
+    "HarmonicField", "HermiteModel", "InputError", "Langevin", "Load", "Modes", "Motion", "Mounted", "Patch",
+    "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel", "Slider",
+    "Stack", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "on_beam", "run_scene", "simulate",
     "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
@@ -61,7 +69,10 @@ _HOME = {
     "SegmentModel": "segment_model", "HarmonicField": "linear.field", "Modes": "linear.modes",
     "WaveMeasures": "travelling_wave", "simulate": "dynamics.simulate", "Motion": "dynamics.result",
     "free_vibration": "dynamics.free_vibration", "FreeVibration": "dynamics.free_vibration",
-    "bend": "chain.statics", "Bent": "chain.statics",
+    "bend": "chain.statics", "Bent": "chain.statics", "PiezoMaterial": "actuators.materials",
+    "Stack": "actuators.transducers", "Bar33": "actuators.transducers", "Bar31": "actuators.transducers",
+    "Langevin": "actuators.transducers", "EndMass": "actuators.transducers", "Patch": "actuators.patch",
+    "Load": "actuators.shunt", "Mounted": "actuators.on_beam", "on_beam": "actuators.on_beam",
     "load_scene": "scene.load", "run_scene": "scene.run", "InputError": "errors",
 }  # fmt: skip
 

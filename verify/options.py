@@ -54,7 +54,6 @@ Inertia = Literal["full", "transverse", "elastic"]
 """Axial inertia of links. full: rigid links. transverse: rigid links, none along x. elastic: stretching links."""
 
 Tip = Literal["free", "roller"]
-TIPS: tuple[str, ...] = get_args(Tip)
 """Far end of a nonlinear chain. free: no constraint. roller: y = 0, free along x."""
 
 Law = Literal["tanh", "coulomb"]

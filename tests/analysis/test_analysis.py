@@ -137,19 +137,6 @@ def test_values_that_do_not_converge_have_an_infinite_band():
 
 
 @pytest.mark.parametrize(
-    ("counts", "values", "message"),
-    [
-        ((10, 20, 20), (1.0, 1.1, 1.2), "three different sizes"),
-        ((10, 20, 30), (1.0, 0.0, 1.2), "other than zero"),
-        ((10, 20, 30), (1.0, 1.1, 1.1 + 1e-14), "within rounding"),
-    ],
-)
-def test_a_grid_convergence_index_needs_three_values(counts, values, message):
-    with pytest.raises(InputError, match=message):
-        grid_convergence(counts, values)
-
-
-@pytest.mark.parametrize(
     ("model", "settings", "expected", "limited", "unlimited"),
     [
         ("segment", (), 4, (0.90, 0.98), (0.75, 0.88)),

@@ -17,6 +17,7 @@ from verify.cli import cli, status_of
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
+GUIDES = [ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control")]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -43,9 +44,10 @@ def test_tour_shows_every_command():
     assert [name for name in cli.list_commands(None) if f"verify {name}" not in text] == []
 
 
-def test_python_of_the_tour_runs():
+@pytest.mark.parametrize("name", ["tour", "actuators"])
+def test_python_of_a_page_runs(name):
     known = {}
-    for body in boxes(ROOT / "docs" / "tour.md", "python"):
+    for body in boxes(ROOT / "docs" / f"{name}.md", "python"):
         exec(body.replace('run_scene("paper")', 'run_scene("driving-layer")'), known)
     assert known["beam"].length == 0.5
 
@@ -73,7 +75,7 @@ def ran(line, capsys, monkeypatch):
     return status, err if status == 2 else out
 
 
-@pytest.mark.parametrize("page", [ROOT / "README.md", ROOT / "docs/engines.md", *TUTORIALS], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [ROOT / "README.md", *GUIDES, *TUTORIALS], ids=lambda page: page.stem)
 def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch, capsys):
     if page.stem == "engines":
         pytest.importorskip("mujoco")

@@ -17,6 +17,7 @@ NUMBERS = {
     "motor_curve": ("no_load", -0.0269, -0.0264),
     "whose_frequencies": ("count", 30, 30),
     "export_chain": ("difference", 1e-15, 1e-9),
+    "volts_to_wave": ("ratio", 2.565, 2.566),
 }
 NOTEBOOKS = {
     "convergence": {"order": (1.99, 2.0), "needed": (218, 218), "error_needed": (9.9e-5, 1e-4)},

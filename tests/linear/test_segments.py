@@ -99,15 +99,6 @@ def test_a_chain_buckles_with_order_two_and_a_tensioned_chain_with_order_four(le
         assert np.log2(tensioned[0] / tensioned[1]) == pytest.approx(4.0, abs=0.02)
 
 
-@pytest.mark.parametrize("count", [5, 49, 400])
-def test_pinned_links_buckle_at_their_closed_form(count):
-    expected = 4 * EI * (count / L) ** 2 * np.sin(pi / (2 * count)) ** 2
-    assert SegmentModel(ABSTRACT, count).buckling_load() == pytest.approx(expected, rel=2e-12)
-    near = -(1 - 1e-6) * expected
-    found = SegmentModel(replace(ABSTRACT, tension=near), count).modes(1).frequencies_hz[0]
-    assert found == pytest.approx(discrete_hz(1, count, tension=near), rel=1e-9)
-
-
 # --- Shapes ----------------------------------------------------------------------------------------------------------
 
 

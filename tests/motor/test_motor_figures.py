@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
 from verify.exact.contact import layer
-from verify.motor.curves import no_load, phase_portrait, reversal, stop, transient
+from verify.motor.curves import no_load, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
 from verify.motor.steady_state import MotorCase, batch_error, crest_speed, steady_state
 from verify.motor.travelling_wave import foot_on_wave
@@ -209,24 +209,6 @@ def test_a_periodic_orbit_has_the_multipliers_of_its_spring(ratio, zeta):
     assert abs(found.multipliers).max() < 1.0
     assert found.residual < 1e-10
     assert np.sort_complex(np.array(found.multipliers)) == pytest.approx(np.sort_complex(wanted), abs=2e-3)
-
-
-def test_the_residual_of_an_orbit_has_its_rates_over_the_omega_of_the_drive():
-    case, settle = on_spring(1.9, 0.004), 7
-    run = case.run(settle, 61 * settle + 1, None, 0.0)
-    height, rate = np.abs(case.run(1, 2, run, 0.0).end.feet - run.end.feet)[0, :2]
-    size = np.ptp(run.height[-61:]) + abs(run.end.feet[0, 0])
-    found = periodic_orbit(case, tolerance=np.inf, settle=settle)
-    assert found.residual == pytest.approx(max(height, rate / OMEGA) / size, rel=1e-6)
-    assert rate / OMEGA > 0.1 * height
-
-
-def test_a_phase_portrait_has_the_rates_of_its_heights():
-    """Harmonic motion: differences of twelve samples a period are 4.5 % low."""
-    case = on_spring(0.6, 0.2)
-    heights, rates = phase_portrait(case, steady_state(case, 0.0).run)
-    assert np.ptp(rates) == pytest.approx(OMEGA * np.ptp(heights), rel=5e-3)
-    assert heights[-1] == pytest.approx(heights[0], abs=1e-3 * np.ptp(heights))
 
 
 # --- means of a slider that bounces

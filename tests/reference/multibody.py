@@ -11,14 +11,6 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 
-def hub(system, t):
-    r = system.rotation
-    w = 2 * np.pi * r.frequency_hz
-    phase = w * t + np.deg2rad(r.phase_deg)
-    swing = r.amplitude * np.sin(phase)
-    return r.offset + r.rate * t + swing, r.rate + r.amplitude * w * np.cos(phase), -(w**2) * swing
-
-
 def reach_of(system, link, at):
     """Distances of a point from the joints before it along the links: its y is reach @ sin(theta)."""
     reach = np.zeros(system.n_links)
@@ -35,8 +27,7 @@ def held(system):
 def equations(system, t, angles, rates):
     """Mass matrix, generalised forces less the inertia of the present rates, constraint rows and their right sides."""
     n = system.n_links
-    turn, turning, _ = hub(system, t)
-    theta, w = turn + np.cumsum(angles), turning + np.cumsum(rates)
+    theta, w = system.hub_rate * t + np.cumsum(angles), system.hub_rate + np.cumsum(rates)
     c, s = np.cos(theta), np.sin(theta)
     moments = -system.stiffness * angles - system.dashpots * rates
     force = moments - np.append(moments[1:], 0.0)
@@ -70,7 +61,7 @@ def by_multipliers(system, t, angles, rates):
 
 
 def relative(system, t, accelerations):
-    return np.diff(accelerations, prepend=hub(system, t)[2])
+    return np.diff(accelerations, prepend=0.0)
 
 
 def elastica_tip(load):

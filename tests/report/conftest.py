@@ -27,16 +27,14 @@ def draw_bars(ax):
     ax.barh(["friction", "damping"], [0.31, 0.07], label="loss")
 
 
-def animate(figure):
-    from matplotlib.animation import FuncAnimation
+def animate(ax):
+    (line,) = ax.plot(np.linspace(0.0, 1.0, 9), np.zeros(9))
 
-    (line,) = figure.subplots().plot(np.linspace(0.0, 1.0, 9), np.zeros(9))
-    return FuncAnimation(figure, lambda i: line.set_ydata(np.linspace(0.0, 0.1 * i, 9)), frames=5, interval=70)
+    def update(i):
+        line.set_ydata(np.linspace(0.0, 0.1 * i, 9))
+        return [line]
 
-
-@pytest.fixture(scope="session")
-def points():
-    return SIZES, ERRORS
+    return update, range(5)
 
 
 @pytest.fixture(scope="session")

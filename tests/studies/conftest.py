@@ -47,10 +47,8 @@ def renders():
             assert figure.caption
         for movie in result.movies:
             with style():
-                animation = movie.animate(Canvas())
-                frames = list(animation.new_frame_seq())
-                assert animation._func(frames[len(frames) // 2])
-                animation._draw_was_started = True
+                update, frames = movie.animate(Canvas().subplots())
+                assert update(list(frames)[-1])
         console = Console(width=100, record=True, quiet=True)
         result.print(console)
         for table in result.tables:

@@ -134,14 +134,17 @@ def on_beam(
     active device, and ResonanceError at an undamped resonance of the beam without its actuators.
     """
     mounted = as_tuple("actuators", actuators, Mounted)
-    respond = responder(model, mounted, frequency_hz, forces=forces, devices=devices, modal_damping=modal_damping)
-    return respond(mounted)
+    return responder(model, mounted, frequency_hz, forces, devices, modal_damping)(mounted)
 
 
 def responder(
-    model: BeamModel, mounted: Sequence[Mounted], frequency_hz: float, *, forces: Loads = (), devices: Devices = (),
+    model: BeamModel,
+    mounted: Sequence[Mounted],
+    frequency_hz: float,
+    forces: Loads = (),
+    devices: Devices = (),
     modal_damping: float = 0.0,
-) -> Callable[[Sequence[Mounted]], ActuatedBeam]:  # fmt: skip
+) -> Callable[[Sequence[Mounted]], ActuatedBeam]:
     """The steady field by the electrical conditions of the actuators, which leave the unit fields as they are."""
     others = loads_on(model.beam, forces, PointLoad)
     passive = as_tuple("devices", devices, Device)

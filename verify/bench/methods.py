@@ -184,7 +184,7 @@ def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array
     spline = CubicSpline(np.append(0.0, times), np.append(0.0, exact))
     least = ceil(problem.duration / (0.97 * limit))
     steps = [least * 2**k for k in range(5)]
-    rk4 = Method("RK4", lambda n: run(method="rk4", step=problem.duration / n), steps, "steps", "segment")
+    rk4 = Method("RK4", lambda n: run(step=problem.duration / n), steps, "steps", "segment")
     adaptive = Method("adaptive", lambda size: run(tolerance=size), (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), "tolerance")
     uncertainty = max(rms(run(4000, tolerance=1e-9)[1], exact), 1e-10)
     return [rk4, adaptive], lambda result: rms(result[1], spline(result[0])), uncertainty

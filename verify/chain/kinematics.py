@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.system import ChainState, ChainSystem, Rotation, circular
+from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
-from verify.validation import check_unmasked
 
 
 class Positions(NamedTuple):
@@ -19,19 +18,10 @@ class Positions(NamedTuple):
     velocities: Array  # (..., N + 1, 2), m/s
 
 
-def hub(rotation: Rotation, times: float | Array) -> tuple[Array, Array]:
-    """(angle, rad, rate, rad/s) of the hub's prescribed rotation, in the shape of the times."""
-    time, omega = np.asarray(times, dtype=float), circular(rotation.frequency_hz)
-    phase = omega * time + np.deg2rad(rotation.phase_deg)
-    angle = rotation.offset + rotation.rate * time + rotation.amplitude * np.sin(phase)
-    return angle, rotation.rate + rotation.amplitude * omega * np.cos(phase)
-
-
 def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array) -> Positions:
     """Kinematics of the links from relative angles and rates, (..., N), at times (...)."""
-    angle, rate = hub(system.rotation, times)
-    directions = np.cumsum(angles, axis=-1) + angle[..., None]
-    spins = np.cumsum(rates, axis=-1) + rate[..., None]
+    directions = np.cumsum(angles, axis=-1) + system.hub_rate * np.asarray(times, dtype=float)[..., None]
+    spins = np.cumsum(rates, axis=-1) + system.hub_rate
     c, s = np.cos(directions), np.sin(directions)
     joints = np.zeros((*directions.shape[:-1], system.n_links + 1, 2))
     velocities = np.zeros_like(joints)
@@ -41,20 +31,15 @@ def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array
     return Positions(directions, spins, joints, velocities)
 
 
-def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
-    """(state with the tip on its roller, largest change of an angle or (times 1 s) of a rate).
+def project(system: ChainSystem, state: ChainState) -> ChainState:
+    """The state with the tip on its roller.
 
     One joint angle depends on the others, that with the longest lever arm: the links beyond it turn as one, and their
-    rate cancels the tip's across. Raises InputError where they do not reach the roller, for a wrong shape and a value
-    that is not finite.
+    rate cancels the tip's across. Raises InputError where they do not reach the roller.
     """
-    for name in ("angles", "rates"):
-        check_unmasked(f"state.{name}", getattr(state, name), "SI")
-        if np.shape(getattr(state, name)) != (system.n_links,) or not np.isfinite(getattr(state, name)).all():
-            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
     q, v = (np.array(values, dtype=float) for values in (state.angles, state.rates))
     if system.tip == "free":
-        return ChainState(q, v, state.time), 0.0
+        return ChainState(q, v, state.time)
     joints = place(system, state.time, q, v).joints
     pivot = int(np.argmax(abs(joints[-1, 0] - joints[:-1, 0])))
     x, y = joints[-1] - joints[pivot]
@@ -65,15 +50,14 @@ def project(system: ChainSystem, state: ChainState) -> tuple[ChainState, float]:
     turn -= 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
     q[pivot] += turn
     placed = place(system, state.time, q, v)
-    change = -placed.velocities[-1, 1] / (placed.joints[-1, 0] - placed.joints[pivot, 0])
-    v[pivot] += change
-    return ChainState(q, v, state.time), float(max(abs(turn), abs(change)))
+    v[pivot] -= placed.velocities[-1, 1] / (placed.joints[-1, 0] - placed.joints[pivot, 0])
+    return ChainState(q, v, state.time)
 
 
 def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
     """A state at rest with `angles` (default: straight), projected onto the roller."""
     still = np.zeros(system.n_links)
-    return project(system, ChainState(still if angles is None else angles, still))[0]
+    return project(system, ChainState(still if angles is None else angles, still))
 
 
 def energies(system: ChainSystem, times: Array, angles: Array, rates: Array) -> Array:

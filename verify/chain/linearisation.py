@@ -10,18 +10,13 @@ from verify.chain.statics import inertia_products, potential
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
 
-FLUTTER = 1e-6  # ratio of real and imaginary part above which a root of a rotating chain is flutter and not rounding
-ROUNDING = 1e-13  # relative rounding error of the roots of a dense eigenvalue problem
-
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """M q'' + (C + G) q' + K q = 0 with constraint q = 0, q the relative angles; N x N matrices."""
+    """M q'' + K q = 0 with constraint q = 0, q the relative angles; N x N matrices."""
 
     mass: Array  # kg m^2
-    damping: Array  # N m s
     stiffness: Array  # N m, with the geometric stiffness of loads and of the roller's reaction
-    gyroscopic: Array  # N m s, antisymmetric; 0 unless a rotating chain is bent
     constraint: Array  # (n, N), m: derivatives of the roller's y; n = 0 for a free tip
 
     def independent(self) -> Array:
@@ -39,25 +34,16 @@ class Linearisation:
     def frequencies(self) -> Array:
         """Undamped circular frequencies, (N - n,), ascending, rad/s; squares within rounding are 0.
 
-        Raises InputError at an unstable equilibrium, and for flutter of a bent rotating chain.
+        Raises InputError at an unstable equilibrium.
         """
         from scipy.linalg import LinAlgError, eigh
 
         basis = self.independent()
-        mass, gyroscopic, stiffness = (basis.T @ m @ basis for m in (self.mass, self.gyroscopic, self.stiffness))
-        n = len(mass)
-        if self.gyroscopic.any():
-            lower = np.linalg.solve(mass, np.hstack([-stiffness, -gyroscopic]))
-            roots = np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), lower]))
-            scale = FLUTTER * abs(roots) + ROUNDING * abs(roots).max()
-            if (np.minimum(abs(roots.real), abs(roots.imag)) > scale).any():
-                raise InputError("the equilibrium is unstable: flutter, give a smaller load or a slower rotation.rate")
-            squares, rounding = np.sort(-(roots**2).real)[::2], ROUNDING  # roots come in pairs of both signs
-        else:
-            try:  # low frequencies are accurate in the inverse problem
-                squares, rounding = np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1]), 0.0
-            except LinAlgError:  # unstable, or with a rigid-body rotation
-                squares, rounding = eigh(stiffness, mass, eigvals_only=True), n * np.finfo(float).eps
+        mass, stiffness = (basis.T @ m @ basis for m in (self.mass, self.stiffness))
+        try:  # low frequencies are accurate in the inverse problem
+            squares, rounding = np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1]), 0.0
+        except LinAlgError:  # unstable, or with a rigid-body rotation
+            squares, rounding = eigh(stiffness, mass, eigvals_only=True), len(mass) * np.finfo(float).eps
         squares = np.where(abs(squares) <= rounding * abs(squares).max(), 0.0, squares)
         growing = squares[squares < 0.0]
         if len(growing):
@@ -71,8 +57,8 @@ class Linearisation:
 def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
     """Equations of the chain linearised about an equilibrium under constant loads, in the frame of the hub.
 
-    About the straight chain the matrices are those of `SegmentModel`. Raises InputError for a moving state, and for a
-    chain perpendicular to the path of its roller.
+    About the straight chain the matrices are those of `SegmentModel`. Raises InputError for a moving state, for a chain
+    perpendicular to the path of its roller, and for a bent one that rotates, whose equations are gyroscopic.
     """
     if np.any(state.rates):
         raise InputError("state.rates: the linearisation is about an equilibrium, give zero rates")
@@ -80,8 +66,10 @@ def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
     at, products = potential(system, angles), inertia_products(system)
     if system.tip == "roller" and abs(at.closure).max() <= 1e-9 * system.length:
         raise InputError("state.angles: the chain is perpendicular to the path of its roller, give others")
-    theta = np.cumsum(angles) + system.rotation.constant
+    theta = np.cumsum(angles)
     difference = np.subtract.outer(theta, theta)
+    if system.hub_rate and difference.any():
+        raise InputError("state.angles: a bent chain that rotates has gyroscopic terms, give a straight one")
     transverse = products * np.outer(np.cos(theta), np.cos(theta))
     mass = (products * np.cos(difference) if system.axial_inertia else transverse) + np.diag(system.inertias)
     stiffness = np.diag(at.geometric + at.reaction() @ at.closure_geometric)
@@ -89,8 +77,6 @@ def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
     sums: Any = np.tril(np.ones((system.n_links, system.n_links)))  # absolute from relative angles
     return Linearisation(
         mass=sums.T @ mass @ sums,
-        damping=np.diag(np.asarray(system.dashpots, dtype=float)),
         stiffness=sums.T @ stiffness @ sums + np.diag(np.asarray(system.stiffness, dtype=float)),
-        gyroscopic=2.0 * system.rotation.rate * sums.T @ (products * np.sin(difference)) @ sums,
         constraint=at.closure @ sums,
     )

@@ -8,23 +8,22 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import structs
 
 from verify.arrays import Array
-from verify.chain.kinematics import at_rest, energies, hub, place, project
+from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
-from verify.segments.chain import Motions, joint_masses, link_mass, plain_factors
-from verify.validation import check_choice, check_number, check_unmasked
+from verify.segments.chain import Motions, link_mass, plain_factors
+from verify.validation import check_number
 
 if TYPE_CHECKING:
     from verify.chain.runge_kutta import Marched
 
-Method = Literal["rk4", "adaptive"]
 Progress = Callable[[float], None]  # called with the completed fraction of a motion, 0 to 1
 FAR = 0.3  # rotation of links, rad, above which a motion from rest is confirmed by a second run
 AGREED = 0.01  # largest distance of two runs, over the largest deflection, at which the second confirms the first
@@ -33,10 +32,6 @@ AGREED = 0.01  # largest distance of two runs, over the largest deflection, at w
 class ChainStatistics(Statistics, frozen=True, kw_only=True):
     """Cost and end of a chain's run."""
 
-    method: Method
-    rejected: int = 0  # number of steps that the error estimate rejected
-    correction: float = 0.0
-    """Largest change of an angle or (times 1 s) of a rate by the projection of the start onto the roller."""
     furthest: float
     """Largest rotation of a link from the straight chain, rad, at the ends of steps; of stretching links at samples."""
 
@@ -75,13 +70,13 @@ class RigidMotion(ChainMotion):
     @property
     def angles(self) -> Array:
         """Relative angles, (n, N), rad."""
-        return np.diff(self.directions(), prepend=hub(self.system.rotation, self.times)[0][:, None])
+        return np.diff(self.directions(), prepend=self.system.hub_rate * self.times[:, None])
 
     @property
     def rates(self) -> Array:
         """Rates of the relative angles, (n, N), rad/s."""
         n = self.system.n_links
-        return np.diff(self.states[:, n : 2 * n], prepend=hub(self.system.rotation, self.times)[1][:, None])
+        return np.diff(self.states[:, n : 2 * n], prepend=self.system.hub_rate)
 
     def state(self, index: int) -> ChainState:
         """The state at one of the times."""
@@ -113,27 +108,9 @@ class ElasticMotion(ChainMotion):
         u, v = self.states.reshape(len(self.times), 2, -1, 2).transpose(1, 0, 2, 3)
         return u, v
 
-    def spans(self) -> tuple[Array, Array]:
-        """Extent of the links along x less their length, and across, (n, N) each, m."""
-        along, across = np.diff(self.moved()[0], axis=1).transpose(2, 0, 1)
-        return along, across
-
-    def energies(self) -> Array:
-        """Kinetic, elastic (of links and joints) and gravitational energy, (3, n), J."""
-        system, (u, v), (along, across) = self.system, self.moved(), self.spans()
-        diagonal, coupling = joint_masses(system.masses, system.inertias, system.lengths)
-        kinetic = 0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling
-        squares = along * (2.0 * system.lengths + along) + across**2
-        stretches = squares / (np.hypot(system.lengths + along, across) + system.lengths)
-        bends = np.diff(self.directions(), axis=1, prepend=0.0)
-        bends -= 2.0 * np.pi * np.round(bends / (2.0 * np.pi))
-        elastic = 0.5 * (stretches**2 @ (system.axial_stiffness / system.lengths) + bends**2 @ system.stiffness)
-        fall = u @ np.array(system.gravity)
-        return np.stack([kinetic, elastic, -0.5 * (fall[:, 1:] + fall[:, :-1]) @ system.masses])
-
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), rad."""
-        along, across = self.spans()
+        along, across = np.diff(self.moved()[0], axis=1).transpose(2, 0, 1)
         return np.asarray(np.arctan2(across, self.system.lengths + along))
 
     def joints(self) -> Array:
@@ -197,35 +174,20 @@ def simulate(
     start: ChainState,
     times: Sequence[float] | Array,
     *,
-    method: Method = "adaptive",
     step: float | None = None,
     tolerance: float = 1e-8,
     progress: Progress = lambda part: None,
 ) -> RigidMotion:
     """The motion from `start` at ascending `times`, from start.time on; the last one is the exact end of a step.
 
-    "rk4" takes a fixed `step`, at most `step_limit`; "adaptive" is Dormand and Prince's pair of orders 5 and 4, its
-    error per step at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
+    A fixed `step`, at most `step_limit`, is one of RK4; without it Dormand and Prince's pair of orders 5 and 4 has an
+    error per step of at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
     InputError.
     """
     began = perf_counter()
-    check_choice("method", method, get_args(Method))
-    if (method == "rk4") != (step is not None):
-        raise InputError(f"step = {step!r}: give a step in seconds with method = 'rk4', and none with 'adaptive'")
-    check_number("tolerance", tolerance, "relative", above=0, below=0.1)
-    check_unmasked("times", times, "seconds")
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
-    if not samples.size or not np.isfinite(samples).all() or (np.diff(samples) <= 0).any() or samples[0] < start.time:
-        raise InputError(f"times: give ascending finite times from {start.time!r} s on")
-    state, correction = project(system, start)
-    if step is not None:
-        limit = step_limit(system)
-        check_number("step", step, "seconds", above=0)
-        if step > limit:
-            raise InputError(
-                f"step = {step!r} s lies above the stability limit {limit:.4g} s of rk4 on this chain: "
-                "give a smaller step, fewer segments or method = 'adaptive'"
-            )
+    samples, state = np.atleast_1d(np.asarray(times, dtype=float)), project(system, start)
+    if step is not None and not 0.0 < step <= (limit := step_limit(system)):
+        raise InputError(f"step = {step!r} s: give one above 0 and up to the stability limit, {limit:.4g} s, or none")
     from verify.chain import rigid_links
     from verify.chain.runge_kutta import DORMAND_PRINCE, RK4, integrate
 
@@ -237,28 +199,20 @@ def simulate(
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
-    statistics = _statistics(method, run, run.furthest, began, ready, correction)
+    statistics = _statistics(run, run.furthest, began, ready)
     return RigidMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
 
 
 def simulate_elastic(
-    system: ChainSystem, times: Sequence[float] | Array, *, step: float | None = None, deflected: Array | None = None
+    system: ChainSystem, times: Sequence[float] | Array, *, step: float | None = None
 ) -> ElasticMotion:
-    """The motion of stretching links from rest, straight or from joint deflections (N + 1,), at even `times` from 0.
+    """The motion of stretching links from rest at even `times` from 0.
 
     `step` of RK4 is at most `elastic_step_limit`, half of it unless given, shortened to divide the spacing of the
-    times. Raises InputError, also for a rotating hub, an axial spring and links without inertia along x.
+    times. Hub, axial spring and `axial_inertia` are not modelled. Raises InputError.
     """
     began = perf_counter()
-    turned = system.rotation.rate or system.rotation.amplitude or system.rotation.offset
-    if system.rigid or turned or system.axial_spring or not system.axial_inertia:
-        raise InputError(
-            "chain: stretching links have an axial_stiffness, no rotation, no axial_spring and no axial_inertia = False"
-        )
-    check_unmasked("times", times, "seconds")
     samples = np.asarray(times, dtype=float)
-    if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
-        raise InputError("times: give two or more, evenly spaced, from 0")
     limit = elastic_step_limit(system)
     step = 0.5 * limit if step is None else step
     check_number("step", step, "seconds", above=0, at_most=limit)
@@ -267,31 +221,25 @@ def simulate_elastic(
 
     size = 2 * system.n_links + 2
     model, y = elastic_links.flatten(system), np.zeros(2 * size)
-    y[1:size:2] = 0.0 if deflected is None else deflected
     spacing, ready = float(samples[1]), perf_counter()
     step = spacing / np.ceil(spacing / step - 1e-9)
     run = integrate(elastic_links.accelerate, model, RK4, size, y, 0.0, samples, step, (0.0, 0.0, 0.0, np.inf))
-    statistics = _statistics("rk4", run, 0.0, began, ready)
+    statistics = _statistics(run, 0.0, began, ready)
     motion = ElasticMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
     return replace(motion, statistics=structs.replace(statistics, furthest=float(abs(motion.directions()).max())))
 
 
-def _statistics(
-    method: Method, run: "Marched", furthest: float, began: float, ready: float, correction: float = 0.0
-) -> ChainStatistics:
+def _statistics(run: "Marched", furthest: float, began: float, ready: float) -> ChainStatistics:
     """Cost and end of a run that began and was ready for its steps at these times."""
-    steps, rejected, evaluations, _ = run.counts.tolist()
+    steps, evaluations, _ = run.counts.tolist()
     reason = {2: "diverged", 3: "the step became too small"}
     return ChainStatistics(
-        method=method,
         steps=steps,
-        rejected=rejected,
         evaluations=evaluations,
         step_s=run.step,
         set_up_s=ready - began,
         wall_s=perf_counter() - ready,
         stopped=END if run.status == 1 else f"{reason[run.status]} at t = {run.time:.6g} s",
-        correction=correction,
         furthest=furthest,
     )
 

@@ -22,8 +22,8 @@ HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range
 weight."""
 ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
 """Columns of `loads`, (n_loads, 7): link 0..N-1, arm from its middle, load, which is times cos(omega t + phase)."""
-OFFSET, RATE, SWING, SWING_OMEGA, SWING_PHASE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(9)
-"""Entries of `numbers`: rotation of the hub, roller, its axial spring, dependent joint, length."""
+RATE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(5)
+"""Entries of `numbers`: angular velocity of the hub, roller, its axial spring, dependent joint, length."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(11)
 """Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
 TINY = 1e-250
@@ -122,13 +122,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
     n = links.shape[0]
     theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
     turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
-    angle, rate = numbers[OFFSET] + numbers[RATE] * t, numbers[RATE]
-    if numbers[SWING] != 0.0:
-        phase = numbers[SWING_OMEGA] * t + numbers[SWING_PHASE]
-        angle, rate = (
-            angle + numbers[SWING] * np.sin(phase),
-            rate + numbers[SWING] * numbers[SWING_OMEGA] * np.cos(phase),
-        )
+    angle, rate = numbers[RATE] * t, numbers[RATE]
     lost, vx, vy, ax, ay, moment, pull = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     power = -rate * (links[0, SPRING] * (theta[0] - angle) + links[0, DASHPOT] * (omega[0] - rate))
     for i in range(n):
@@ -170,7 +164,7 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
 
 def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
     """(links, loads, numbers, scratch) of a chain, the data of `accelerate`."""
-    half, turn, masses, n = system.lengths / 2.0, system.rotation, system.masses, system.n_links
+    half, masses, n = system.lengths / 2.0, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
     along = masses * system.axial_inertia
     inertia = [system.inertias + half**2 * masses, 0.25 * (along - masses)]
@@ -179,8 +173,7 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
         (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
     ]
-    swing = (turn.amplitude, circular(turn.frequency_hz), np.deg2rad(turn.phase_deg))
-    numbers = (turn.offset, turn.rate, *swing, system.tip == "roller", system.axial_spring, 0.0, system.length)
+    numbers = (system.hub_rate, system.tip == "roller", system.axial_spring, 0.0, system.length)
     return (
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
         np.array(loads, dtype=float).reshape(len(loads), 7),

@@ -26,7 +26,7 @@ RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 TIME, STEP = 0, 1  # entries of `clock`
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
 """Entries of `control`: tolerances, largest mean change of a coordinate per step, largest rms and coordinate so far."""
-STEPS, REJECTED, EVALUATIONS, KEPT = range(4)  # entries of `counts`
+STEPS, EVALUATIONS, KEPT = range(3)  # entries of `counts`
 
 
 class Tableau(NamedTuple):
@@ -173,7 +173,6 @@ def march(
             if not (accepted and closing):
                 clock[STEP] = following
             if not accepted:
-                counts[REJECTED] += 1
                 continue
         while counts[KEPT] < samples.size and (closing or samples[counts[KEPT]] <= t + h):
             at = min((samples[counts[KEPT]] - t) / h, 1.0)
@@ -193,7 +192,7 @@ class Marched(NamedTuple):
     status: int  # DONE, DIVERGED or TOO_SMALL
     time: float  # end time of the march, s
     step: float  # the last step, s
-    counts: Indices  # (4,): steps, rejected steps, evaluations, samples
+    counts: Indices  # (3,): steps, evaluations, samples
     furthest: float  # largest modulus of a coordinate at the ends of steps
 
 
@@ -215,7 +214,7 @@ def integrate(
     at which it has diverged. `progress` is called with the fraction of time done.
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
-    counts, numbers = np.zeros(4, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
+    counts, numbers = np.zeros(3, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
     budget, status = max(200_000 // y.size, 16), RUNNING  # some tens of milliseconds between two interrupts
     run: Any = march
     while status == RUNNING:

@@ -9,7 +9,7 @@ of two marches.
 import numpy as np
 
 from verify.arrays import Array, Indices
-from verify.chain import elastic_links, rigid_links
+from verify.chain import rigid_links
 from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
@@ -161,13 +161,8 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                     ends[0], ends[1] = (step + 0.5) * dt, (step + 1.0) * dt
                     clock[TIME], clock[STEP], counts[KEPT] = step * dt, substep, 0
                     kept = states[1:3] if trial < 0 else probe
-                    if n == factors.shape[2] // 2:
-                        why = march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k,
-                                    clock, ends, kept, control, counts, BUDGET)  # fmt: skip
-                    else:
-                        why = march(elastic_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k,
-                                    clock, ends, kept, control, counts, BUDGET)  # fmt: skip
-                    if why != MARCHED:
+                    if march(rigid_links.accelerate, links, loads, numbers, scratch, a, c, weights, n, y, k, clock,
+                             ends, kept, control, counts, BUDGET) != MARCHED:  # fmt: skip
                         return lay.NOT_FINITE
                 if trial >= 0:
                     read_links(HALF, n, y, links, factors)

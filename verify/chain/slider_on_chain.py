@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.chain.kinematics import at_rest, energies
-from verify.chain.motion import elastic_step_limit, from_rest, highest_frequency, step_limit
+from verify.chain.motion import from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
 from verify.dynamics import layout as lay
@@ -65,7 +65,7 @@ def slide_on_chain(
     `margins` are those of the linear chain; energies of stretching links are not in the balance.
 
     Raises InputError as `simulate` does; for hard contact, a raw contact line and an unresolved motion of the chain;
-    with two-way coupling for normal = "bilateral", feet on stretching links, and a preload that depends on deflection.
+    with two-way coupling for normal = "bilateral", stretching links, and a preload that depends on deflection.
     """
     began = perf_counter()
     check_integer("count", count, 2)
@@ -85,8 +85,8 @@ def slide_on_chain(
             raise InputError(f"slider.line = {one.line!r}: contact with a nonlinear chain is along its spline")
         if request.two_way and one.contact is None and one.normal == "bilateral":
             raise InputError("slider.normal = 'bilateral': a nonlinear chain takes friction alone, give 'massless'")
-        if request.two_way and one.contact is not None and links == "stretching":
-            raise InputError("slider.coupling = 'two-way': stretching links carry feet one-way, give links = 'rigid'")
+        if request.two_way and links == "stretching":
+            raise InputError("slider.coupling = 'two-way': stretching links move one-way, give links = 'rigid'")
         if request.two_way and (one.preload_stiffness or any(foot.mirrored for foot in one.feet)):
             raise InputError(
                 "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
@@ -153,12 +153,9 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
 
         system = self.system
         if contacts.two_way:
-            if not system.rigid:
-                states, limit = np.zeros((3, 4 * system.n_links + 4)), elastic_step_limit(system) / 4.0
-            else:
-                states = np.zeros((3, 2 * system.n_links + 2))
-                states[0] = begin(system, self._static(contacts), numbers)
-                limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
+            states = np.zeros((3, 2 * system.n_links + 2))
+            states[0] = begin(system, self._static(contacts), numbers)
+            limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
             return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
         times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
         return from_rest(system, times, tolerance=self.tolerance, progress=progress).states, steps.dt
@@ -175,7 +172,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         links, loads, numbers, scratch = rigid_links.flatten(system) if rigid else elastic_links.flatten(system)
         if two_way:  # dead loads at the far joints
             spare = np.zeros((count, 7))
-            spare[:, 0], spare[:, 6] = 0.5 * system.lengths if rigid else 1.0, np.arange(count)
+            spare[:, 0], spare[:, 6] = 0.5 * system.lengths, np.arange(count)
             loads = np.concatenate([loads, spare])
         states, substep = self._states(steps, contacts, numbers, progress)
         n, points, columns, width = (states.shape[1] - 2 * rigid) // 2, len(contacts.points), 2 * count, states.shape[1]
@@ -190,7 +187,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),
             stage.edges[[0, -1]] - contacts.start, links, loads, numbers, scratch, tableau.a, tableau.c, n, substep,
             np.zeros(0), np.zeros((len(tableau.c) + 3, width)), np.zeros(2), np.array([0.0, 0.0, 0.0, np.pi, 0, 0, 0]),
-            np.zeros(4, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
+            np.zeros(3, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
             np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
             contacts.feet, contacts.points, contacts.contacts, contacts.indices, run.feet_of,
             np.zeros((4, 2, columns)), np.zeros((count, 2, 4)), np.zeros(count, dtype=np.int64),

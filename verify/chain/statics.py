@@ -61,7 +61,7 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
     The frame rotates with a steadily rotating hub. Raises InputError for loads and supports that do not.
     """
     lengths, n_closures = system.lengths, int(system.tip == "roller")
-    theta = system.rotation.constant + np.cumsum(angles)
+    theta = np.cumsum(angles)
     c, s = np.cos(theta), np.sin(theta)
     forces = factor * np.outer(system.masses, system.gravity)
     arms, moments = 0.5 * lengths[:, None] * forces, np.zeros(system.n_links)
@@ -77,13 +77,13 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
     gradient, full = along * s - across * c - moments - spring * lengths * s, np.zeros((0, 0))
     if system.axial_spring:
         full = system.axial_spring * np.outer(lengths * s, lengths * s)
-    if system.rotation.rate:
+    if system.hub_rate:
         if n_closures or outboard.any() or arms.any() or not system.axial_inertia:
             raise InputError(
-                f"rotation.rate = {system.rotation.rate!r}: a roller, gravity, dead forces and links without axial "
-                "inertia do not rotate with the hub, no equilibrium exists; leave them out or give rate = 0"
+                f"chain.hub_rate = {system.hub_rate!r}: a roller, gravity, dead forces and links without axial "
+                "inertia do not rotate with the hub, no equilibrium exists; leave them out or give 0"
             )
-        products, difference = system.rotation.rate**2 * inertia_products(system), np.subtract.outer(theta, theta)
+        products, difference = system.hub_rate**2 * inertia_products(system), np.subtract.outer(theta, theta)
         gradient += (products * np.sin(difference)).sum(axis=1)
         full = -products * np.cos(difference)
         np.fill_diagonal(full, np.diag(full) - full.sum(axis=1))

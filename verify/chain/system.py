@@ -6,39 +6,19 @@ across it. Coordinates are the paper's relative joint angles q_i = theta_i - the
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import pi, radians, sin
+from math import pi
 
 import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
-from verify.options import LINKS, TIPS, Joints, Links, Load, Tip, Wall
+from verify.options import LINKS, Joints, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
-from verify.validation import check_choice, check_number, check_unmasked
-
-
-@dataclass(frozen=True, kw_only=True)
-class Rotation:
-    """The hub's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), rad."""
-
-    offset: float = 0.0
-    rate: float = 0.0  # rad/s
-    amplitude: float = 0.0
-    frequency_hz: float = 0.0
-    phase_deg: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
-            check_number(f"rotation.{name}", getattr(self, name), "SI, degrees for the phase")
-
-    @property
-    def constant(self) -> float:
-        """The constant part of the angle, rad: the offset, and an amplitude without a frequency."""
-        return self.offset + (0.0 if self.frequency_hz else self.amplitude * sin(radians(self.phase_deg)))
+from verify.validation import check_choice, check_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,20 +32,10 @@ class LinkLoad:
     frequency_hz: float = 0.0
     phase_deg: float = 0.0
 
-    def __post_init__(self) -> None:
-        for name, value in zip(("force x", "force y", "moment"), (*self.force, self.moment), strict=True):
-            check_number(f"load.{name}", value, "N, N m")
-        check_number("load.frequency_hz", self.frequency_hz, "hertz, 0 for a constant load", at_least=0)
-        check_number("load.phase_deg", self.phase_deg, "degrees")
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChainSystem:
-    """N rigid links, joint springs and dashpots, a hub, a tip, loads. SI.
-
-    Raises InputError for a link without length, mass or inertia, negative springs or dashpots, loads off their links,
-    and a tip that cannot move along x.
-    """
+    """N rigid links, joint springs and dashpots, a hub, a tip, loads. SI."""
 
     lengths: Array  # (N,)
     masses: Array  # (N,)
@@ -78,38 +48,8 @@ class ChainSystem:
     """(N,), EA of links that stretch, N; (0,) of rigid ones."""
     axial_inertia: bool = True  # whether links have inertia along x, which rigid links overestimate
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
-    rotation: Rotation = Rotation()  # rotation of the hub
+    hub_rate: float = 0.0  # angular velocity of the hub, rad/s, whose angle at time 0 is 0
     loads: tuple[LinkLoad, ...] = ()
-
-    def __post_init__(self) -> None:
-        n = len(self.lengths)
-        if n == 0:
-            raise InputError("chain.lengths is empty: give at least one link")
-        stretching = () if self.rigid else ("axial_stiffness",)
-        for name in ("lengths", "masses", "inertias", "stiffness", "dashpots", *stretching):
-            check_unmasked(f"chain.{name}", getattr(self, name), "SI")
-            values = np.asarray(getattr(self, name), dtype=float)
-            if values.shape != (n,):
-                raise InputError(f"chain.{name} has the shape {values.shape}: give one value for each of {n} links")
-            limit = "at_least" if name in ("stiffness", "dashpots") else "above"
-            for i, value in enumerate(values.tolist(), start=1):
-                check_number(f"chain.{name} of link {i}", value, "SI", **{limit: 0.0})
-        check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
-        for value in self.gravity:
-            check_number("chain.gravity", value, "m/s^2")
-        if self.tip not in TIPS:
-            raise InputError(
-                f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
-                "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "
-                "EA/L for an immovable end"
-            )
-        if self.axial_spring and self.tip == "free":
-            raise InputError(f"chain.axial_spring = {self.axial_spring!r} acts at a roller: give tip = 'roller' or 0")
-        for load in self.loads:
-            if not 1 <= load.link <= n:
-                raise InputError(f"load.link = {load.link!r}: the chain has links 1 to {n}")
-            most = float(self.lengths[load.link - 1]) * (1.0 + 1e-12)
-            check_number("load.at", load.at, "metres from the link's near joint", at_least=-1e-12 * most, at_most=most)
 
     @property
     def n_links(self) -> int:

@@ -1,7 +1,7 @@
 """Exact frequencies and mode shapes of uniform beams in closed form.
 
-Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, the frequencies of a
-pinned-pinned beam by Rayleigh's and Timoshenko's theories, and those of a rod in extension and torsion.
+Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair of supports, waves by Timoshenko's
+theory, and the frequencies of a rod in extension and torsion.
 """
 
 from collections.abc import Callable
@@ -87,32 +87,22 @@ def unit_shapes(supports: tuple[str, str], betas: Array) -> Callable[[Array, int
     return lambda xi, derivative: waves(factors, xi, derivative) * betas[:, None] ** derivative
 
 
-def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
-    """The exact frequency of one mode of a uniform beam, Hz.
-
-    `euler-bernoulli` for all supports; `rayleigh` and `timoshenko` (Timoshenko, Phil. Mag. 41, 1921) between pinned
-    ends, by `theory_ratio`. Raises InputError.
-    """
+def frequency_hz(beam: Beam, mode: int) -> float:
+    """The exact frequency of one mode of a uniform beam by Euler-Bernoulli theory, Hz. Raises InputError."""
     check_uniform(beam)
-    beta, own = wavenumber_length(beam.supports, mode) / beam.length, beam.base_section
-    omega = beta * beta * beam.wave_constant
-    if theory != "euler-bernoulli":
-        if beam.supports != ("pinned", "pinned"):
-            raise InputError(f"theory = {theory!r} has a closed form for pinned-pinned beams only: use euler-bernoulli")
-        omega *= theory_ratio(own, beta, theory)
-    return omega / (2.0 * pi)
+    beta = wavenumber_length(beam.supports, mode) / beam.length
+    return beta * beta * beam.wave_constant / (2.0 * pi)
 
 
-def theory_ratio(piece: Piece, wavenumber: float, theory: str = "timoshenko") -> float:
-    """Frequency of a wave (1/m) by Rayleigh's or Timoshenko's theory over that by Euler-Bernoulli's.
+def theory_ratio(piece: Piece, wavenumber: float) -> float:
+    """Frequency of a wave (1/m) by Timoshenko's theory (Phil. Mag. 41, 1921) over that by Euler-Bernoulli's.
 
     With a = k^2 I/A and s = k^2 EI / (kappa G A) it is the root of the lower root of
     a s Lambda^2 - (1 + a + s) Lambda + 1 = 0, Lambda = omega^2 / omega_EB^2.
     """
     square = wavenumber * wavenumber
     a = square * (piece.rotary_inertia or 0.0) / piece.mass_per_length
-    shear = piece.shear_stiffness if theory == "timoshenko" else None
-    s = square * piece.bending_stiffness / shear if shear else 0.0
+    s = square * piece.bending_stiffness / piece.shear_stiffness if piece.shear_stiffness else 0.0
     return sqrt(2.0 / (1.0 + a + s + sqrt((1.0 + a + s) ** 2 - 4.0 * a * s)))
 
 

@@ -1,4 +1,4 @@
-"""Curves of a motor: force over speed, no-load speed, start, stop and reversal, phase portraits.
+"""Curves of a motor: force over speed, no-load speed, start, stop and reversal.
 
 The no-load speed is that of a heavy slider, with a prescribed speed that is constant within a drive period. That of a
 light free slider (`transient`) differs, since its speed varies within the period. Time constants come from means over a
@@ -12,7 +12,6 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array
-from verify.dynamics import layout as lay
 from verify.dynamics.result import Motion
 from verify.errors import InputError
 from verify.motor.steady_state import (
@@ -28,8 +27,6 @@ from verify.motor.steady_state import (
 
 FINE = 32
 """Number of periods of a free run with samples at every step; later one sample per period."""
-PORTRAIT = 48
-"""Number of points of a phase portrait per period."""
 REASONS = {
     "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
@@ -155,16 +152,3 @@ def reversal(case: MotorCase, before: Transient, periods: int) -> Transient:
     """Continue a run with the phases of all forces negated."""
     forces = tuple(replace(one, phase_deg=-one.phase_deg) for one in case.forces)
     return transient(replace(case, forces=forces), periods, before)
-
-
-def phase_portrait(case: MotorCase, before: Motion, speed: float = 0.0) -> tuple[Array, Array]:
-    """(heights, m, their rates, m/s) of the feet in the period after a run at a prescribed speed, (49, feet) each.
-
-    The rates are state variables of the feet, not difference quotients.
-    """
-    states = [before.end.feet]
-    for _ in range(PORTRAIT):
-        before = case.run(1.0 / PORTRAIT, 2, before, speed)
-        states.append(before.end.feet)
-    rows = np.array(states)
-    return rows[:, :, lay.HEIGHT], rows[:, :, lay.CLIMB]

@@ -17,11 +17,11 @@ Acceleration = Annotated[float, Meta(description="external force over mass, m/s^
 Gravity = Annotated[float, Meta(gt=0, description="gravity, m/s^2")]
 Stiffness = Annotated[float, Meta(gt=0, description="spring stiffness, N/m")]
 Friction = Annotated[float, Meta(gt=0, description="friction force, N")]
-HalfAngle = Annotated[float, Meta(gt=0, lt=pi, description="half the contact length, as phase of the wave, rad")]
+HalfAngle = Annotated[float, Meta(ge=1e-3, lt=pi, description="half the contact length, as phase of the wave, rad")]
 SpeedRatio = Annotated[float, Meta(description="slider speed over surface speed at the crests")]
 SlowerThanWave = Annotated[float, Meta(ge=0, lt=1, description="slider speed over surface speed at the crests")]
 Compliance = Annotated[float, Meta(ge=0, description="tangential compliance 2 mu kappa/(kappa_t k h); 0: rigid")]
-AccelerationRatio = Annotated[float, Meta(gt=1, description="surface acceleration A omega^2 over g + F/m")]
+AccelerationRatio = Annotated[float, Meta(gt=1, le=1e9, description="surface acceleration A omega^2 over g + F/m")]
 DampingRatio = Annotated[float, Meta(ge=0, description="c/(2 sqrt(k m)) of mass, spring and dashpot")]
 MU = 0.2  # friction coefficient of a foot on a wave; forces over mu N do not depend on it
 

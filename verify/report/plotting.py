@@ -151,60 +151,37 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     return svg, small.getvalue()
 
 
-def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> tuple[list[Any], float]:
-    """The movie's pictures (pillow, RGBA) and the milliseconds that each is shown."""
-    from matplotlib.animation import AbstractMovieWriter
+def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> list[Any]:
+    """The movie's pictures (pillow, RGBA), of which only the artists that move are drawn anew."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as MatplotlibFigure
     from numpy import asarray
     from PIL import Image
 
-    frames: list[Any] = []
-
-    agg: Any = FigureCanvasAgg
-
-    class Canvas(agg):  # type: ignore[misc]
-        """After the first frame draws only what is `animated`, over a copy of everything else."""
-
-        still: Any = None
-
-        def draw_idle(self, *args: Any, **kwargs: Any) -> None:
-            moving = self.figure.findobj(lambda artist: artist.get_animated())
-            if self.still is None or not moving:
-                for artist in moving:
-                    artist.set_visible(False)
-                self.draw()
-                self.figure.set_layout_engine("none")  # the layout of the first frame serves all
-                self.still = self.copy_from_bbox(self.figure.bbox)
-            self.restore_region(self.still)
-            for artist in moving:
-                artist.set_visible(True)
-                self.figure.draw_artist(artist)
-
-    class Collector(AbstractMovieWriter):
-        def setup(self, fig: Any, outfile: Any, dpi: Any = None) -> None:
-            super().setup(fig, "frames", dpi)
-
-        def grab_frame(self, **settings: Any) -> None:
-            frames.append(Image.fromarray(asarray(canvas.buffer_rgba()).copy()))
-
-        def finish(self) -> None:
-            pass
-
+    pictures: list[Any] = []
     with style(ink):
-        canvas: Any = Canvas(MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper))
-        animation: Any = movie.animate(canvas.figure)
-        interval = float(animation.event_source.interval)
-        animation.save("frames", writer=Collector(), savefig_kwargs={"facecolor": paper})
-    return frames, interval
+        canvas: Any = FigureCanvasAgg(
+            MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
+        )
+        update, frames = movie.animate(canvas.figure.subplots())
+        for artist in update(0):
+            artist.set_animated(True)
+        canvas.draw()
+        still = canvas.copy_from_bbox(canvas.figure.bbox)
+        for frame in frames:
+            canvas.restore_region(still)
+            for artist in update(frame):
+                canvas.figure.draw_artist(artist)
+            pictures.append(Image.fromarray(asarray(canvas.buffer_rgba()).copy()))
+    return pictures
 
 
 def movie_image(movie: "Movie") -> tuple[bytes, bytes]:
     """The movie for a page: (animated WebP that repeats, its first frame as WebP), transparent, for light and dark."""
-    frames, interval = movie_frames(movie)
-    few = [frame.quantize(32, method=2).convert("RGBA") for frame in frames]  # a third of the size for lines
+    # a third of the size for lines
+    few = [frame.quantize(32, method=2).convert("RGBA") for frame in movie_frames(movie)]
     moving, still = io.BytesIO(), io.BytesIO()
     settings = {"format": "webp", "lossless": True, "quality": 50, "method": 2}
     few[0].save(still, **settings)
-    few[0].save(moving, **settings, save_all=True, append_images=few[1:], duration=interval, loop=0)
+    few[0].save(moving, **settings, save_all=True, append_images=few[1:], duration=60, loop=0)
     return moving.getvalue(), still.getvalue()

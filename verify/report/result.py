@@ -7,7 +7,7 @@ A `Result` holds what was computed as plain values: a summary, tables, figures, 
 import csv
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
@@ -16,9 +16,7 @@ from verify.analysis.verdict import COLOURS, Margin, Verdict, verdict_of
 from verify.formatting import unit_over
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as MatplotlibFigure
     from rich.console import Console
 
 MISSING = "–"
@@ -140,7 +138,8 @@ class Movie:
     id: str
     title: str
     caption: str
-    animate: Callable[["MatplotlibFigure"], "FuncAnimation"]
+    animate: Callable[["Axes"], tuple[Callable[[int], Sequence[Any]], Iterable[int]]]
+    """Draws on axes; returns (function of a frame that moves artists and returns them, frames)."""
 
 
 @dataclass(frozen=True, eq=False)

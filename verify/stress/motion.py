@@ -75,7 +75,7 @@ def rk4_stability(part: float) -> float:
     system = build_system(STRIP, 12)
     start = at_rest(system, 1e-7 * np.random.default_rng(3).standard_normal(12))
     step = part * step_limit(system)
-    motion = simulate(system, start, [0.0, 2000 * step], method="rk4", step=step)
+    motion = simulate(system, start, [0.0, 2000 * step], step=step)
     kinetic, elastic, _ = motion.energies()
     total = kinetic + elastic
     return max(float(total[-1] / total[0]) - 1.0, 0.0) if motion.statistics.finished else inf

@@ -1,7 +1,7 @@
 """Outcomes of stress checks as a result: a table and data."""
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import asdict
 
 from verify.report.result import Column, Result, Table
 from verify.stress.engine import Outcome, registry
@@ -11,21 +11,15 @@ COLUMNS += [Column("worst", format=".2g"), Column("breaks at"), Column("standard
 NOTE = "worst: largest error over the range; standard: that of the standard method."
 
 
-def record(outcome: Outcome) -> dict[str, Any]:
-    """An outcome as data."""
-    check, names = registry()[outcome.id], ("worst", "passed", "breaks_at", "breaks_by", "seconds", "points")
-    return {
-        **{name: getattr(check, name) for name in ("id", "title", "parameter", "tolerance")},
-        **{"from": check.values[0], "to": check.values[-1]},
-        **{name: getattr(outcome, name) for name in names},
-        "baseline": max((error for _, error in outcome.baseline), default=None),
-        "baseline_name": check.baseline[0] if check.baseline else "",
-    }
-
-
 def result(outcomes: Sequence[Outcome]) -> Result:
     """Table and data of the outcomes."""
-    records = [record(one) for one in outcomes]
+    records = []
+    for outcome in outcomes:
+        check = registry()[outcome.id]
+        own = {name: getattr(check, name) for name in ("id", "title", "parameter", "tolerance")}
+        own |= {"from": check.values[0], "to": check.values[-1]} | asdict(outcome)
+        own["baseline"] = max((error for _, error in outcome.baseline), default=None)
+        records.append(own | {"baseline_name": check.baseline[0] if check.baseline else ""})
     failed = [one["id"] for one in records if not one["passed"]]
     rows = []
     for one in records:

@@ -1,4 +1,4 @@
-"""What the tables and charts of several studies share: columns, lines in suitable units, movies."""
+"""What the tables and charts of several studies share: columns, lines in suitable units."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -7,12 +7,11 @@ from verify.analysis.variants import Variant
 from verify.formatting import unit_over
 from verify.linear.registry import MODELS
 from verify.report.plotting import CYCLE, MODEL_COLORS
-from verify.report.result import Column, Movie, Table
+from verify.report.result import Column, Table
 
 if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
 THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact beam below them
 MOST_POINTS = 2000
 
@@ -65,17 +64,3 @@ def plot_lines(
     ax.set(xlabel=f"{x[0]}, {x_unit.name}".rstrip(", "), ylabel=f"{y[0]}, {y_unit.name}".rstrip(", "))
     if any(label for label, *_ in drawn):
         ax.legend()
-
-
-def movie(key: str, title: str, caption: str, set_up: "Callable[[Axes], Any]") -> "Movie":
-    """A movie. `set_up` draws on axes and returns (function of a frame that returns its artists, frames)."""
-
-    def animate(figure: "Figure") -> "FuncAnimation":
-        from matplotlib.animation import FuncAnimation
-
-        update, frames = set_up(figure.subplots())
-        for artist in update(0):
-            artist.set_animated(True)  # `report.plotting.movie_frames` draws nothing else again
-        return FuncAnimation(figure, update, frames=frames, interval=60)
-
-    return Movie(key, title, caption, animate)

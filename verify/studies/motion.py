@@ -15,9 +15,9 @@ from verify.linear.registry import MODELS, bounding, discrete
 from verify.options import Start
 from verify.problem.slider import Contact
 from verify.quantities.slider import TimeOptions, motion_arguments
-from verify.report.result import Column, Figure, Result, Table
+from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, percent, plot_lines, si, sized_title, table
+from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
@@ -155,7 +155,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
             tables=[*_tables(runs), *([readings(scene)] if exact else [])],
             figures=figures,
-            movies=[movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
+            movies=[Movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
             data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
             margins=margins,
         )

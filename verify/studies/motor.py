@@ -1,4 +1,4 @@
-"""The motor of a scene: force over speed, no load, start, stop and reversal, phase portrait, on every model."""
+"""The motor of a scene: force over speed, no load, start, stop and reversal, on every model."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,8 +34,6 @@ CHARTS = {
     "motor-speed": ("Start, stop, reversal", TIME, SPEED, "Means over a sliding period of the drive: free run from the "
     "slider's own speed (solid), drive switched off (dotted), drive phases reversed (dashed). The beam's own transient "
     "is neglected."),
-    "motor-portrait": ("Phase portrait of a foot", ("height", "m"), ("rate", "m/s"), "Height and its rate of the first "
-    "foot over one period of the drive, at standstill."),
 }  # fmt: skip
 NOTES = (
     "Crest speed: amplitude of the tangential surface velocity at the slider. No-load speed: prescribed, with zero "
@@ -259,7 +257,6 @@ def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
     import numpy as np
 
     from verify.analysis.margins import marked
-    from verify.motor.curves import phase_portrait
     from verify.report.result import Figure
 
     lines: dict[str, list[Any]] = {key: [] for key in CHARTS}
@@ -275,8 +272,6 @@ def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
                 n = max(int(np.searchsorted(one.times, shown)), 3)
                 own = style if dash == "-" else style | {"linestyle": dash, "linewidth": 1.4}
                 lines["motor-speed"].append((name if dash == "-" else "", one.times[:n], one.speeds[:n], own))
-    portrait = phase_portrait(fields[0].case, fields[0].curve[0].run)
-    lines["motor-portrait"] = [(fields[0].name, *(rows[:, 0] for rows in portrait), model_style(fields[0].case.model))]
     still, ends = fields[0].curve[0].means, np.array([0.0, fields[0].curve[-1].speed])
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
     lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))

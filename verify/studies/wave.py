@@ -12,9 +12,9 @@ from verify.errors import InputError, WindowError
 from verify.formatting import unit_of, unit_over
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
-from verify.report.result import Column, Figure, Result, Table
+from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, movie, plot_lines, si, sized_title
+from verify.studies.charts import model_style, plot_lines, si, sized_title
 from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
                 Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
             ],
-            movies=[movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
+            movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
             data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
             margins=margins,
@@ -237,6 +237,6 @@ def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
             points.set_data(along.factor * x_surface[:, frame], up.factor * height[:, frame])
             return [*lines.values(), points]
 
-        return update, FRAMES
+        return update, range(FRAMES)
 
     return set_up
