@@ -135,6 +135,8 @@ def test_quantities_without_an_actuator():
     for figure in ("resistance", "inductance"):
         value = measured("shunt.optimum", figure=figure, circuit="parallel", **real)
         assert value == pytest.approx(getattr(best, figure), rel=1e-12)
+    lossy = {"circuit": "resistor-loss", "coupling": 0.2, "figure": "loss_factor"}
+    assert measured("shunt.optimum", **lossy) == pytest.approx(0.02 / np.sqrt(1.04), rel=1e-12)
     assert measured("shunt.peak", coupling=0.2, circuit="negative-parallel", negative=0.43) == pytest.approx(28.5)
     for name, changed, sentence in (
         ("peak", {}, "give coupling, or mode and position"),

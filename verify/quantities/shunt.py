@@ -66,10 +66,24 @@ def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, in
     return mode.peak(msgspec.structs.replace(load, **own))
 
 
-@quantity("shunt.optimum", unit="ohm or H", reads=("beam", "drive"))
-def optimum(scene: Scene, shunt: ShuntOptions, *, figure: Figure = "resistance") -> float:
-    """Optimum of a shunt in closed form: its resistance or inductance."""
-    return _part(shunt.best(scene)[1], figure)
+@quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))
+def optimum(
+    scene: Scene,
+    shunt: ShuntOptions,
+    *,
+    figure: Annotated[
+        Literal["resistance", "inductance", "peak", "loss_factor"],
+        Meta(description="ohm, H, or without a unit; loss_factor: Im/Re of the stiffness at short_hz"),
+    ] = "peak",
+) -> float:
+    """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
+    mode, load = shunt.best(scene)
+    if figure == "peak":
+        return mode.peak(load)
+    if figure == "loss_factor":
+        stiffness = complex(mode.stiffness(load, mode.omega))
+        return stiffness.imag / stiffness.real
+    return _part(load, figure)
 
 
 def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tuple[Any, Any, Load, float]:
