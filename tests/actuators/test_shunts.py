@@ -115,9 +115,6 @@ def test_absorbing_stack_of_the_paper():
     port, end = STACK.port(OMEGA), ending(PAPER, 4276.0, DISTANCE)
     load = absorbing_load(port, end.matched, OMEGA)
     assert [load.resistance, load.inductance] == pytest.approx([4.66507, 0.1222564], rel=1e-6)
-    opened, blocked = port.loaded_impedance(), port.blocked_admittance  # h = i omega B/Y, Z_oc
-    direct = (port.force_factor / blocked) ** 2 / (opened - end.matched) - 1.0 / blocked
-    assert complex(load.resistance, OMEGA * load.inductance) == pytest.approx(direct, rel=1e-9)
     assert reflection(port.loaded_impedance(load.admittance(OMEGA)), end) < 1e-9
     for figure in ("resistance", "inductance"):
         assert measured("shunt.absorber", position=DISTANCE, figure=figure) == getattr(load, figure)

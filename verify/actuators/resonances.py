@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.actuators.port import Actuator
 from verify.actuators.transducers import Longitudinal
+from verify.errors import InputError
 from verify.validation import check_integer, check_type
 
 if TYPE_CHECKING:
@@ -71,15 +72,14 @@ def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
     lines = [(line, line.layers if line is lossless.parts.active else 1) for line in lossless.parts if line]
     # modes of plain bars are at multiples of 0.5: at a step of the grid their sign is lost in rounding
     half_wave = 0.4987 / sum(layers * line.length / complex(line.speed).real for line, layers in lines)
-    halves = count + 1
-    while True:
+    for halves in range(count + 1, 32 * (count + 1), count + 1):
         grid = half_wave * np.append(np.geomspace(1e-6, 1.0 / STEPS, 100)[:-1], np.arange(1, halves * STEPS) / STEPS)
         short, open_ = (_zeros(lossless, grid, is_open) for is_open in (False, True))
         alike = np.isclose(short[:, None], open_, rtol=UNCOUPLED, atol=0.0)
         coupled = short[~alike.any(axis=1)], open_[~alike.any(axis=0)]
         if min(map(len, coupled)) > count:  # one more: the range may end between two that are alike
             return coupled[0][:count], coupled[1][:count]
-        halves += count + 1
+    raise InputError(f"actuator.material = {actuator.ceramic!r} excites no resonance {count}, check e31 and e33")
 
 
 def _zeros(lossless: Longitudinal, grid: "Array", is_open: bool) -> "Array":
