@@ -139,7 +139,7 @@ def test_power_in_is_power_out_and_losses_and_a_lossless_beam_returns_it_all(nam
     for one in found.actuators:
         assert one.power_in == pytest.approx(one.power_out + one.loss, abs=1e-11 * scale)
         assert one.loss >= 0.0
-    assert abs(found.absorbed) < 1e-9 * scale
+    assert abs(sum(one.power_out for one in found.actuators)) < 1e-9 * scale
     shunt = found.actuators[2]
     assert shunt.power_in == pytest.approx(-0.5 * 3.1e5 * abs(shunt.current) ** 2, rel=1e-9)
 
@@ -152,7 +152,8 @@ def test_the_power_of_all_actuators_is_dissipated_in_bending_and_in_a_dashpot():
     x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()
     bending = abs(found.field.derivative(x, 2)) ** 2 @ weights * BEAM.bending_stiffness
     dashpot = DEVICE.dashpot * (OMEGA * abs(found.field.deflection(DEVICE.position)[0])) ** 2
-    assert found.absorbed == pytest.approx(0.5 * (OMEGA * BEAM.loss_factor * bending + dashpot), rel=1e-9)
+    absorbed = sum(one.power_out for one in found.actuators)
+    assert absorbed == pytest.approx(0.5 * (OMEGA * BEAM.loss_factor * bending + dashpot), rel=1e-9)
 
 
 # --- The paper's beam ------------------------------------------------------------------------------------------------

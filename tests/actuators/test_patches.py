@@ -104,9 +104,9 @@ def test_shunted_patch_damps_the_mode_of_a_cantilever():
     assert opened == pytest.approx(b**2 / c, rel=1e-13)
     short, shapes = eigh(stiffness, mass)
     opens = eigh(stiffness + opened.real * np.outer(bend, bend), mass, eigvals_only=True)
-    hertz = np.sqrt([short[0], opens[0]]) / (2.0 * np.pi)
     gains = (b * bend @ shapes) ** 2
-    mode = ShuntedMode.measured(*hertz, c + sum(gains[1:] / (short[1:] - short[0])))
+    mode = ShuntedMode(coupling=np.sqrt(opens[0] / short[0] - 1.0), omega=np.sqrt(short[0]),
+                       capacitance=c + sum(gains[1:] / (short[1:] - short[0])))  # fmt: skip
     modal = ShuntedMode.bonded(ExactModel(beam).modes(200), patch, 0.031, 1)
     assert [modal.coupling, modal.capacitance] == pytest.approx([mode.coupling, mode.capacitance], rel=2e-3)
     scene = SimpleNamespace(beam=ARM, drive=SimpleNamespace(actuator=ONE), beside="")

@@ -77,7 +77,7 @@ def states(mode, load):
 @pytest.mark.parametrize("parts", [(3.1e4, 71.0, None), (3.1e4, None, None), (2e4, None, -61e-9), (2e4, 43.0, 57e-9)])
 def test_response_equals_the_state_space_model(parts):
     load = Load(**dict(zip(("resistance", "inductance", "capacitance"), parts, strict=True)))
-    mode = ShuntedMode.measured(116.3, 123.1, 23e-9)
+    mode = ShuntedMode(coupling=0.34, omega=731.0, capacitance=23e-9)
     matrix, omegas = states(mode, load), np.array([311.0, 735.0, 911.0])
     force = np.eye(len(matrix))[1]
     expected = [np.linalg.solve(1j * omega * np.eye(len(matrix)) - matrix, force)[0] for omega in omegas]
@@ -127,8 +127,8 @@ def test_absorbing_stack_of_the_paper():
 def test_quantities_without_an_actuator():
     own = {"resistance": 0.3, "inductance": 1.0}
     assert measured("shunt.peak", coupling=0.2, **own) == FIFTH.peak(Load(**own))
-    best = ShuntedMode.measured(116.3, 123.1, 23e-9).optimum("parallel")
-    real = {"coupling": np.sqrt((123.1 / 116.3) ** 2 - 1.0), "short_hz": 116.3, "capacitance": 23e-9}
+    best = ShuntedMode(coupling=0.34, omega=2.0 * np.pi * 116.3, capacitance=23e-9).optimum("parallel")
+    real = {"coupling": 0.34, "short_hz": 116.3, "capacitance": 23e-9}
     for figure in ("resistance", "inductance"):
         value = measured("shunt.optimum", figure=figure, circuit="parallel", **real)
         assert value == pytest.approx(getattr(best, figure), rel=1e-12)

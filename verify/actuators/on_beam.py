@@ -113,11 +113,6 @@ class ActuatedBeam(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     field: HarmonicField
     actuators: tuple[ActuatorState, ...]
 
-    @property
-    def absorbed(self) -> float:
-        """Power of the actuators to the beam, W: what beam and devices dissipate less the power of other loads."""
-        return sum(one.power_out for one in self.actuators)
-
 
 def on_beam(
     model: BeamModel,

@@ -86,14 +86,6 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         validate(self, "mode")
 
     @classmethod
-    def measured(cls, short_hz: float, open_hz: float, capacitance: float) -> "ShuntedMode":
-        """The mode of a structure from its frequencies with short-circuited and open electrodes. Raises InputError."""
-        check_number("short_hz", short_hz, "hertz", above=0)
-        check_number("open_hz", open_hz, "hertz", above=float(short_hz))
-        ratio = sqrt((open_hz - short_hz) * (open_hz + short_hz)) / short_hz
-        return cls(coupling=ratio, omega=2.0 * pi * short_hz, capacitance=capacitance)
-
-    @classmethod
     def bonded(cls, modes: "Modes", patch: "Patch", position: float, number: int) -> "ShuntedMode":
         """A mode, from 1, of the beam from `patch.on`, with a patch centred at `position` (m).
 
