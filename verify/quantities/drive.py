@@ -1,6 +1,5 @@
 """Quantities of actuators on a driven beam: force per volt, power, and the wave under voltages."""
 
-from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, Annotated
 
@@ -57,21 +56,20 @@ def _voltages(options: FieldOptions) -> FieldOptions:
     return replace(options, drive="voltage") if options.drive is None else options
 
 
-VOLTAGES = {
-    "ratio": ("standing_wave_ratio", "Standing-wave ratio with the drive's amplitudes as voltages of its actuators."),
-    "direction": ("direction", "Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x."),
-}
+@quantity("wave.voltage_ratio", unit="1", reads=DRIVEN, devices=True)
+def voltage_ratio(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Standing-wave ratio with the drive's amplitudes as voltages of its actuators."""
+    return measured(driven_case(scene, _voltages(options)), cache, window).standing_wave_ratio
 
 
-def _of_waves(figure: str) -> Callable[..., float]:
-    def of_waves(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
-        return float(getattr(measured(driven_case(scene, _voltages(options)), cache, window).waves, figure))
-
-    return of_waves
-
-
-for _name, (_figure, _text) in VOLTAGES.items():
-    quantity(f"wave.voltage_{_name}", unit="1", summary=_text, reads=DRIVEN, devices=True)(_of_waves(_figure))
+@quantity("wave.voltage_direction", unit="1", reads=DRIVEN, devices=True)
+def voltage_direction(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x."""
+    return float(measured(driven_case(scene, _voltages(options)), cache, window).waves.direction)
 
 
 @quantity("wave.pure_voltage_phase", unit="deg", reads=DRIVEN, devices=True)
