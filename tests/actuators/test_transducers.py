@@ -37,17 +37,17 @@ CAPACITANCE = PZT4.derived.eps33 * ACROSS.length * ACROSS.width / ACROSS.thickne
 
 def layers_of(actuator):
     """The layers of a transducer from its base to its tip, for the finite elements."""
-    material = actuator.ceramic
+    density = actuator.ceramic.density
     if isinstance(actuator, Bar31):
-        constants, area = material.bar_constants("31"), actuator.width * actuator.thickness
-        return [Layer(actuator.length, area, material.density, *constants, actuator.thickness)]
-    constants = (actuator.area, material.density, *material.bar_constants("33"))
+        constants, area = actuator.bar_constants("31"), actuator.width * actuator.thickness
+        return [Layer(actuator.length, area, density, *constants, actuator.thickness)]
+    constants = (actuator.area, density, *actuator.bar_constants("33"))
     if isinstance(actuator, Bar33):
         return [Layer(actuator.length, *constants)]
     if isinstance(actuator, Stack):
         return [Layer(actuator.layer_thickness, *constants)] * actuator.layers
     back, front = (
-        Layer(m.length, m.area or actuator.area, m.density, 1.0 / (m.youngs_modulus * (1.0 + 1j * m.loss_factor)))
+        Layer(m.length, m.area or actuator.area, m.density, 1.0 / m.youngs_modulus)
         for m in (actuator.back, actuator.front)
     )
     return [back, *[Layer(actuator.ring_thickness, *constants)] * actuator.rings, front]
@@ -55,11 +55,12 @@ def layers_of(actuator):
 
 def test_pzt8_is_the_inverse_of_its_catalogue():
     """Strain-charge constants of the Morgan catalogue; k33, k31 of it and of APC 880 (Navy III) are 0.64, 0.30."""
-    s, d, eps = PIEZO["pzt-8"].strain_charge
-    assert 1e12 * s[[0, 0, 0, 2, 3], [0, 1, 2, 2, 3]] == pytest.approx([11.5, -3.7, -4.8, 13.5, 31.9], rel=1e-3)
-    assert 1e12 * d[[2, 2, 0], [0, 2, 4]] == pytest.approx([-97.0, 225.0, 330.0], rel=1e-3)
-    assert eps[[0, 2], [0, 2]] / EPS0 == pytest.approx([1290.0, 1000.0], rel=1e-3)
-    assert (PIEZO["pzt-8"].derived.k33, PIEZO["pzt-8"].derived.k31) == pytest.approx((0.64, 0.30), abs=0.012)
+    one = PIEZO["pzt-8"].derived
+    assert (1e12 * one.s11, 1e12 * one.s33, 1e12 * one.d31, 1e12 * one.d33) == pytest.approx(
+        (11.5, 13.5, -97.0, 225.0), rel=1e-3
+    )
+    assert one.eps33 / EPS0 == pytest.approx(1000.0, rel=1e-3)
+    assert (one.k33, one.k31) == pytest.approx((0.64, 0.30), abs=0.012)
 
 
 @pytest.mark.parametrize("name", PIEZO)
@@ -67,19 +68,19 @@ def test_pzt8_is_the_inverse_of_its_catalogue():
 def test_bar_constants_by_elimination_of_lateral_strains(name, direction):
     m = PIEZO[name]
     expected = bar_constants(m.c11, m.c12, m.c13, m.c33, m.e31, m.e33, EPS0 * m.eps33, direction == "33")
-    assert m.bar_constants(direction) == pytest.approx(expected, rel=1e-13)
+    assert replace(LONG, material=name).bar_constants(direction) == pytest.approx(expected, rel=1e-13)
 
 
-def test_own_material_and_its_losses():
+def test_own_material_and_losses():
     own = replace(PZT4, c33=111e9)
-    lossy, lossless = replace(LONG, material=replace(own, **LOSSES)), replace(LONG, material=own)
+    lossless, lossy = replace(LONG, material=own), replace(LONG, material=own, **LOSSES)
     assert resonances(lossy) == resonances(lossless) != resonances(LONG)
-    assert impedance(lossy, 5e4) == impedance(replace(lossless, **LOSSES), 5e4)
     assert impedance(lossy, 5e4).real > 1e-3 * abs(impedance(lossy, 5e4))
-    wrong = {"c13": 130e9, "c12": -140e9, "piezoelectric_loss": 0.0042, "density": -1.0}
-    for (name, value), word in zip(wrong.items(), ("definite", "definite", "source of energy", "above 0"), strict=True):
+    for name, value, word in (("c13", 130e9, "definite"), ("c12", -140e9, "definite"), ("density", -1.0, "above 0")):
         with pytest.raises(InputError, match=word):
-            replace(own, **{**LOSSES, name: value})
+            replace(own, **{name: value})
+    with pytest.raises(InputError, match="source of energy"):
+        replace(lossy, piezoelectric_loss=0.0042)
 
 
 def test_figures_to_their_printed_digits():
@@ -127,16 +128,13 @@ def test_stack_below_its_resonance_and_as_a_wave():
     one, length, w = PZT4.derived, 0.01, 2.0 * pi * np.array([40.0, 4000.0, 4276.0])
     port = STACK.port(w)
     np.testing.assert_allclose(port.force_factor, one.d33 * STACK.area / (one.s33 * STACK.layer_thickness), rtol=1e-12)
-    assert port.force_factor == pytest.approx(0.93321, abs=5e-6)
     dynamic = (1j * w * port.short_impedance).real
     assert dynamic[0] == pytest.approx(STACK.area / (one.s33 * length), rel=1e-6)
     mass = (dynamic[0] - dynamic[1]) / (w[1] ** 2 - w[0] ** 2)
     assert mass == pytest.approx(PZT4.density * STACK.area * length / 3.0, rel=1e-3)
-    bending = (70e9 * 0.02 * 0.001**3 / 12.0) ** 0.25 * (2700.0 * 0.02 * 0.001 * w[2] ** 2) ** 0.75  # EI k^3
-    assert w[2] * abs(port.short_impedance[2]) / bending == pytest.approx(554.0, abs=0.5)
     thin = replace(STACK, layers=400, layer_thickness=2.5e-5)  # a wave with the speed of short-circuited electrodes
     assert resonances(thin)[0] == pytest.approx(1.0 / sqrt(PZT4.density * one.s33) / (4.0 * length), rel=1e-5)
-    bar = replace(STACK, layering="one-bar")
+    bar = replace(STACK, layers=1, layer_thickness=length)  # one bar, C0 -> n^2 C0, h -> h/n, but for n
     assert bar.port(w[2]).short_impedance == pytest.approx(port.short_impedance[2], rel=1e-6)
     assert resonances(bar)[0] == pytest.approx(76534.907, abs=5e-4)  # a quarter of the wave of the free bar of 20 mm
 
@@ -146,8 +144,6 @@ def test_stack_below_its_resonance_and_as_a_wave():
 @EACH
 def test_port_and_power_equal_those_of_finite_elements(actuator, losses, base):
     one = replace(actuator, base=base, **losses)
-    if losses and actuator is UNEQUAL:
-        one = replace(one, back=replace(STEEL, loss_factor=0.0013))
     for frequency, voltage, tip in ((7.1e3, 3.0 - 2.0j, 0.01 + 0.02j), (61e3, -1.3j, 0.7 - 0.1j)):
         w = 2.0 * pi * frequency
         stiffness = {"fixed": inf, "free": 0.0}.get(base, base)
@@ -174,19 +170,6 @@ def test_forms_agree(actuator, base):
     ]
     assert errors[0] < 1e-3
     assert 2.8 < np.log2(errors[0] / errors[1]) < 3.2
-    bar = replace(ACROSS, form="circuit", branches=7).parts.active
-    exact, circuit = (1.0 / replace(bar, form=form).three_port(w[:3]).symmetric for form in ("mason", "circuit"))
-    np.testing.assert_allclose(abs(circuit / exact - 1.0), bar.truncation(w[:3]), rtol=1e-6, atol=1e-15)
-
-
-def test_three_port_is_masons():
-    w, one, line = 2.0 * pi * 53e3, PZT4.derived, LONG.parts.active
-    theta, t = w * LONG.length / line.speed, one.d33 / (one.eps33 * one.s33_open) / (1j * w)
-    a, b = line.impedance / (1j * np.tan(theta)), line.impedance / (1j * np.sin(theta))
-    clamped = LONG.length / (1j * w * one.eps33 * (1.0 - one.k33**2) * LONG.area)
-    velocities, current = [0.3 + 0.1j, -0.2j], 0.07 - 0.04j
-    f1, f2, voltage = np.array([[a, b, t], [b, a, t], [t, t, clamped]]) @ [*velocities, current]
-    assert line.three_port(w).matrix @ [*velocities, voltage] == pytest.approx(np.array([f1, f2, current]), rel=1e-12)
 
 
 @pytest.mark.parametrize("actuator", [replace(UNEQUAL, base=3e8), STACK, LONG], ids=["langevin", "stack", "bar"])
@@ -200,8 +183,13 @@ def test_branches_add_up_to_the_admittance(actuator):
 @pytest.mark.parametrize("base", ["fixed", "free", 4.4e8])
 @pytest.mark.parametrize(
     "actuator",
-    [UNEQUAL, replace(HALF_WAVE, back=replace(ALUMINIUM, length=0.0451)), replace(STACK, layers=7)],
-    ids=["unequal", "nearly symmetric", "stack"],
+    [
+        UNEQUAL,
+        replace(HALF_WAVE, back=replace(ALUMINIUM, length=0.0451)),
+        replace(HALF_WAVE, front=replace(ALUMINIUM, area=HALF_WAVE.area / 300)),
+        replace(STACK, layers=7),
+    ],
+    ids=["unequal", "nearly symmetric", "thin", "stack"],
 )
 def test_no_resonance_is_missed(actuator, base):
     one = replace(actuator, base=base)
@@ -218,8 +206,8 @@ def test_no_resonance_is_missed(actuator, base):
 def test_modes_that_the_voltage_does_not_excite_are_left_out():
     assert resonances(ACROSS, 3) == pytest.approx(resonances(ACROSS)[0] * np.array([1.0, 3.0, 5.0]), rel=1e-12)
     assert coupling(ACROSS, 2) < coupling(ACROSS)
-    with pytest.raises(InputError, match="soft a spring"):
-        resonances(replace(LONG, base=1e-9))
+    with pytest.raises(InputError, match="excites no resonance"):
+        resonances(replace(LONG, material=replace(PZT4, e31=0.0, e33=0.0)))
     with pytest.raises(InputError, match="count = 0"):
         resonances(LONG, 0)
 
@@ -241,7 +229,7 @@ def test_quantities_of_a_scene():
     bar = {"kind": "bar-31", "length": 0.02, "width": 0.003, "thickness": 0.0005}
     assert value("branch", bar, element="inductance") == branch(ACROSS).inductance
     assert value("coupling", {"kind": "bar-33", "length": 0.02, "area": 9e-6}) == coupling(LONG)
-    unstable = {**asdict(PZT4), "c44": -1.0}
+    unstable = {**asdict(PZT4), "c33": 1.0}
     wrong = {"kind": "bar-13", "area": 1e-6, "base": -1.0, "material": unstable}
     sentences = ("did you mean", "actuator.area is not a known key", "above 0", "definite")
     for (key, word), sentence in zip(wrong.items(), sentences, strict=True):

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from verify.actuators.materials import Direction, Form, PiezoMaterial
+from verify.actuators.materials import Form
 from verify.actuators.port import Number, Port
 
 
@@ -48,13 +48,6 @@ class ThreePort(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     antisymmetric: Number  # a - b, kg/s
     force_factor: Number  # N, N/V
     blocked_admittance: Number  # Y = i omega C0, S
-
-    @property
-    def matrix(self) -> Any:
-        """[F1 F2 I] from [v1 v2 V], (..., 3, 3)."""
-        own, transfer = 0.5 * (self.symmetric + self.antisymmetric), 0.5 * (self.symmetric - self.antisymmetric)
-        own, transfer, n, y = np.broadcast_arrays(own, transfer, self.force_factor, self.blocked_admittance)
-        return np.moveaxis(np.array([[own, transfer, n], [transfer, own, n], [-n, -n, y]]), (0, 1), (-2, -1))
 
     def repeated(self, layers: int) -> "ThreePort":
         """Equal layers mechanically in series and electrically in parallel (G. Martin, JASA 36:1366, 1964).
@@ -157,29 +150,3 @@ class PiezoLine(Line, frozen=True, kw_only=True):
         tangent = np.sum(8.0 * half / (odd - 4.0 * half**2), -1) + x * (1.0 - np.sum(8.0 / odd))
         cotangent = 1.0 / x - np.sum(2.0 * half / (even - half**2), -1) - 2.0 * x * (1.0 / 6.0 - np.sum(1.0 / even))
         return tangent, cotangent
-
-    def truncation(self, omega: Any) -> Any:
-        """Relative error of the circuit's motional admittance that is due to its number of branches."""
-        return abs(self._series(omega)[0] / np.tan(0.5 * omega * self.length / self.speed) - 1.0)
-
-
-def piezo_line(
-    material: PiezoMaterial, direction: Direction, *, length: float, area: float, gap: float, **form: Any
-) -> PiezoLine:
-    """A bar of cross-section `area` (m^2); `gap` (m) is the distance of the electrodes.
-
-    C0 = epsT (1 - k^2) A l/gap^2 and N = d A/(sE gap). A length of n gaps along the field is n layers as one bar: C0
-    -> n^2 C0 and h -> h/n of the bar with a single layer.
-    """
-    compliance, d, permittivity = material.bar_constants(direction)
-    clamped, along = 1.0 - d**2 / (compliance * permittivity), direction == "33"
-    speed = (material.density * compliance * (clamped if along else 1.0)) ** -0.5
-    return PiezoLine(
-        impedance=material.density * speed * area,
-        speed=speed,
-        length=length,
-        capacitance=permittivity * clamped * area * length / gap**2,
-        force_factor=d * area / (compliance * gap),
-        along=along,
-        **form,
-    )

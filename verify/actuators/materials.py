@@ -2,16 +2,13 @@
 
 from functools import cached_property
 from math import sqrt
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import msgspec
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.validation import Relative, unit, validate
-
-if TYPE_CHECKING:
-    from verify.arrays import Array
+from verify.validation import unit, validate
 
 EPS0 = 8.8541878128e-12
 """Permittivity of vacuum, F/m (CODATA 2018)."""
@@ -40,84 +37,50 @@ class Derived(NamedTuple):
 class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """A ceramic poled along 3 (6mm): T = cE S - e^t E, D = e S + epsS E (IEEE Std 176-1987, Table 8).
 
-    Losses are those of the strain-charge form, which catalogues measure: sE (1 - i/Q), d (1 - i p), epsT (1 - i tan
-    delta) with e^{+i omega t} (R. Holland, IEEE Trans. Sonics Ultrason. 14:18, 1967). Raises InputError for constants
-    of an unstable material, and for a piezoelectric loss that makes it a source of energy.
+    The constants are those without shear, which act in slender bars and layers. Raises InputError for constants of an
+    unstable material.
     """
 
     c11: Stiffness
     c12: Stiffness
     c13: Stiffness
     c33: Stiffness
-    c44: Stiffness
-    e15: Stress
     e31: Stress
     e33: Stress
-    eps11: Permittivity
     eps33: Permittivity
     density: Annotated[float, unit("kg/m^3", gt=0), Meta(description="rho, kg/m^3")]
-    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
-    """tan delta of the free ceramic."""
-    mechanical_loss: Annotated[Relative, unit("1/Q", ge=0, lt=1)] = 0.0
-    """1/Q with short-circuited electrodes."""
-    piezoelectric_loss: Annotated[Relative, unit("loss tangent", gt=-1, lt=1)] = 0.0
-    """Loss tangent of d31 and d33."""
     source: str = ""
     """Publication of the constants."""
 
     def __post_init__(self) -> None:
         validate(self, "material")
-        if min(self.c44, self.c11 - abs(self.c12), (self.c11 + self.c12) * self.c33 - 2.0 * self.c13**2) <= 0.0:
+        if min(self.c11 - abs(self.c12), (self.c11 + self.c12) * self.c33 - 2.0 * self.c13**2) <= 0.0:
             raise InputError(
-                f"material.c11 = {self.c11!r}: c11 to c44 are not positive definite, check the constants and their unit"
+                f"material.c11 = {self.c11!r}: c11 to c33 are not positive definite, check the constants and their unit"
             )
-        if self.piezoelectric_loss:
-            limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(self.derived.k33, self.derived.k31, 1e-300)
-            if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
-                raise InputError(
-                    f"material.piezoelectric_loss = {self.piezoelectric_loss!r} makes the bar a source of energy: give "
-                    f"at most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
-                )
-
-    @cached_property
-    def strain_charge(self) -> "tuple[Array, Array, Array]":
-        """(sE (6, 6) in 1/Pa, d (3, 6) in C/N, epsT (3, 3) in F/m) without losses: sE = cE^-1, d = e sE."""
-        import numpy as np
-
-        stiffness = np.diag([self.c11, self.c11, self.c33, self.c44, self.c44, 0.5 * (self.c11 - self.c12)])
-        stiffness[[0, 1], [1, 0]] = self.c12
-        stiffness[[0, 1, 2, 2], [2, 2, 0, 1]] = self.c13
-        e = np.zeros((3, 6))
-        e[[0, 1], [4, 3]] = self.e15
-        e[2, :3] = self.e31, self.e31, self.e33
-        d = e @ np.linalg.inv(stiffness)
-        return np.linalg.inv(stiffness), d, EPS0 * np.diag([self.eps11, self.eps11, self.eps33]) + d @ e.T
 
     @cached_property
     def derived(self) -> Derived:
-        """Compliances, piezoelectric constants, permittivity and coupling factors of slender bars."""
-        s, d, eps = (one.tolist() for one in self.strain_charge)
-        s11, s33, d31, d33, eps33 = s[0][0], s[2][2], d[2][0], d[2][2], eps[2][2]
+        """Compliances, piezoelectric constants, permittivity and coupling factors: sE = cE^-1, d = e sE."""
+        import numpy as np
+
+        e = np.array([self.e31, self.e31, self.e33])
+        rows = [[self.c11, self.c12, self.c13], [self.c12, self.c11, self.c13], [self.c13, self.c13, self.c33]]
+        s = np.linalg.inv(rows)
+        d, eps33 = e @ s, EPS0 * self.eps33 + float(e @ s @ e)
+        s11, s33, d31, d33 = float(s[0, 0]), float(s[2, 2]), float(d[0]), float(d[2])
         k31, k33 = abs(d31) / sqrt(s11 * eps33), abs(d33) / sqrt(s33 * eps33)
         return Derived(s11, s33, s33 * (1.0 - k33**2), d31, d33, eps33, k31, k33)
-
-    def bar_constants(self, direction: Direction) -> tuple[complex, complex, complex]:
-        """(sE, d, epsT33) of a slender bar with losses: 1/Pa, C/N, F/m."""
-        real = self.derived
-        compliance, d = (real.s33, real.d33) if direction == "33" else (real.s11, real.d31)
-        losses = (1.0 - 1j * one for one in (self.mechanical_loss, self.piezoelectric_loss, self.dielectric_loss))
-        return compliance * next(losses), d * next(losses), real.eps33 * next(losses)
 
 
 MaterialName = Literal["pzt-4", "pzt-8"]
 PIEZO: dict[str, PiezoMaterial] = {
     "pzt-4": PiezoMaterial(
-        c11=139e9, c12=77.8e9, c13=74.3e9, c33=115e9, c44=25.6e9, e15=12.7, e31=-5.2, e33=15.1, eps11=730.0,
-        eps33=635.0, density=7500.0, source="D. Berlincourt, D. Curran, H. Jaffe, Physical Acoustics I-A (1964), Ch. 3",
+        c11=139e9, c12=77.8e9, c13=74.3e9, c33=115e9, e31=-5.2, e33=15.1, eps33=635.0, density=7500.0,
+        source="D. Berlincourt, D. Curran, H. Jaffe, Physical Acoustics I-A (1964), Ch. 3",
     ),
     "pzt-8": PiezoMaterial(
-        c11=146.88e9, c12=81.09e9, c13=81.05e9, c33=131.71e9, c44=31.35e9, e15=10.34, e31=-3.875, e33=13.91,
-        eps11=904.4, eps33=561.6, density=7600.0,
+        c11=146.88e9, c12=81.09e9, c13=81.05e9, c33=131.71e9, e31=-3.875, e33=13.91, eps33=561.6, density=7600.0,
         source="inverse of sE, d, epsT in D. Berlincourt, H. Krueger, C. Near, Morgan Electro Ceramics TP-226",
     ),
 }  # fmt: skip

@@ -30,7 +30,7 @@ from verify.linear.positions import Loads, frequencies_on, loads_on
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.problem.supports import check_free
+from verify.problem.supports import FIXED, check_free
 from verify.validation import as_tuple, check_position
 
 QUASI_STATIC = 0.05
@@ -66,10 +66,13 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
             check_free("actuator", self.position, beam.length, beam.supports, {"force": 1.0})
             return (PointForce(position=self.position),)
         half = 0.5 * self.actuator.length
-        ends = self.position - half, self.position + half
-        for end in ends:
+        ends = {1.0: self.position + half, -1.0: self.position - half}
+        for end in ends.values():
             check_position("actuator.position, an end of the patch,", end, beam.length)
-        return PointMoment(position=ends[1]), PointMoment(position=ends[0], amplitude=-1.0)
+        # a moment at a clamped or guided end of the beam, which does not turn, has no effect
+        still = [x for x, name in zip((0.0, beam.length), beam.supports, strict=True) if FIXED[name].rotation]
+        return tuple(PointMoment(position=end, amplitude=sign) for sign, end in ends.items()
+                     if all(abs(end - x) > 1e-9 * beam.length for x in still))  # fmt: skip
 
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""
@@ -109,11 +112,6 @@ class ActuatedBeam(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     field: HarmonicField
     actuators: tuple[ActuatorState, ...]
-
-    @property
-    def absorbed(self) -> float:
-        """Power of the actuators to the beam, W: what beam and devices dissipate less the power of other loads."""
-        return sum(one.power_out for one in self.actuators)
 
 
 def on_beam(
@@ -269,26 +267,25 @@ def beam_in_time(
     if isinstance(actuator, Patch):
         whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
         patch = actuator.bonded(beam)
-        volts = complex(patch.port(omega).force_factor).real
+        volts = patch.moment_per_volt
         pairs = [replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
                  for one in driven
                  for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)]  # fmt: skip
         circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
         return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
-    port, worst, low = actuator.port(omega), 0.0, np.array([0.1, 0.2, 0.3, 1.0])
+    port, worst = actuator.port(omega), 0.0
     places = [(one.position, kind == "current") for one in driven] + [(x, False) for x, _ in shunts]
     for x, opened in dict.fromkeys(places):
-        ports = actuator.port(omega * low)
-        dynamic = 1j * omega * low * (ports.loaded_impedance() if opened else ports.short_impedance)
-        stiffness, mass, _ = np.linalg.solve(np.vander(low[:3] ** 2, increasing=True), dynamic[:3].real).tolist()
-        worst = float(abs(dynamic[3] - (stiffness + mass)) / abs(dynamic[3]))
-        if worst > QUASI_STATIC or stiffness < 0.0 or mass > 0.0:
+        stiffness, mass, error = _spring_and_mass(actuator, omega, opened)
+        worst = max(worst, error)
+        if error > QUASI_STATIC or stiffness < 0.0 or mass < 0.0:
             raise InputError(
-                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {worst:.2g} "
+                f"drive.actuator: in time it is a spring and a mass, which at {frequency_hz:g} Hz errs by {error:.2g} "
                 f"(at most {QUASI_STATIC:g}): drive it far below its resonance, or use a quantity of the steady wave"
             )
-        springs = *beam.spring, PointSpring(position=x, stiffness=stiffness)
-        beam = replace(beam, spring=springs, mass=(*beam.mass, PointMass(position=x, mass=-mass / omega**2)))
+        springs = (PointSpring(position=x, stiffness=stiffness),) if stiffness else ()
+        body = PointMass(position=x, mass=mass)
+        beam = replace(beam, spring=(*beam.spring, *springs), mass=(*beam.mass, body))
     factor = complex(port.force_factor / (port.blocked_admittance if kind == "current" else 1.0))
     capacitance = (complex(port.blocked_admittance) / (1j * omega)).real
     own = QuasiStatic(force_factor=complex(port.force_factor).real, capacitance=capacitance)
@@ -298,3 +295,24 @@ def beam_in_time(
         circuits=tuple(Mounted(actuator=own, position=x, load=load) for x, load in shunts),
         error=worst,
     )
+
+
+def _spring_and_mass(actuator: Actuator, omega: float, opened: bool) -> tuple[float, float, float]:
+    """(stiffness, N/m; mass, kg; relative error of their dynamic stiffness at omega), electrodes open or closed."""
+
+    def dynamic(at: Any) -> Any:
+        port = actuator.port(at)
+        return 1j * at * (port.loaded_impedance() if opened else port.short_impedance)
+
+    at = omega
+    while True:
+        steps = at * np.array([0.1, 0.2, 0.3])
+        terms = np.vander((steps / at) ** 2, increasing=True)
+        stiffness, inertia, _ = np.linalg.solve(terms, dynamic(steps).real).tolist()
+        if abs(inertia) > 1e-6 * abs(stiffness):
+            break
+        at *= 10.0  # far below the resonance the mass is lost in rounding
+    if abs(stiffness) < 1e-6 * abs(inertia):  # on a free base
+        stiffness = 0.0
+    mass, exact = -inertia / at**2, complex(dynamic(np.array([omega]))[0])
+    return stiffness, mass, abs(exact - (stiffness - mass * omega**2)) / abs(exact)

@@ -4,9 +4,8 @@ Beam theory of the laminate (E. F. Crawley, J. de Luis, AIAA J. 25:1373 (1987), 
 IEEE Trans. UFFC 38:256 (1991)): plane sections, no axial force, stress along the beam alone. With the field E3 = V/t
 along the poling the stress is T1 = (S1 - d31 E3)/s11E, so that the transformed section has the modulus 1/s11E in the
 layers and a voltage adds a constant bending moment over the patch. The field is taken as constant through a layer. The
-true one, of constant D3, stiffens the layer against its own bending by k31^2/(1 - k31^2); `induced_stiffening` is the
-size of this neglect in EI. The bond is thin and rigid; free edges relieve the stress within about a layer's thickness,
-so the patch is long against t.
+true one, of constant D3, stiffens the layer against its own bending by k31^2/(1 - k31^2). The bond is thin and rigid;
+free edges relieve the stress within about a layer's thickness, so the patch is long against t.
 """
 
 from typing import Annotated, Any
@@ -20,7 +19,7 @@ from verify.actuators.port import Actuator, Port
 from verify.errors import InputError
 from verify.problem.beam import SHORTEST_SECTION, Beam
 from verify.problem.cross_section import CrossSection, Section, piece_of, set_fields
-from verify.validation import check_number, unit, validate
+from verify.validation import Relative, check_number, unit, validate
 
 
 class Laminate(msgspec.Struct, frozen=True, kw_only=True):
@@ -53,6 +52,8 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
     """1: a layer on the side of +w; 2: a layer on either side."""
     material: MaterialName | PiezoMaterial = "pzt-4"
     """Ceramic: pzt-4, pzt-8, or a table of its constants."""
+    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
+    """tan delta of the free ceramic; bending of the layers has no loss."""
     substrate: CrossSection | None = None
     """Rectangular section under the patch; default: that of the beam to which `bonded` fixes the patch."""
 
@@ -70,14 +71,8 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
 
     @property
     def ceramic(self) -> PiezoMaterial:
-        """The material's constants."""
+        """The constants of the material."""
         return PIEZO[self.material] if isinstance(self.material, str) else self.material
-
-    @property
-    def _constants(self) -> tuple[complex, complex, complex]:
-        """(s11E, e31 = d31/s11E, epsS = epsT33 (1 - k31^2)) of a narrow layer: 1/Pa, C/m^2, F/m."""
-        s, d, permittivity = self.ceramic.bar_constants("31")
-        return s, d / s, permittivity - d**2 / s
 
     def bonded(self, beam: Beam) -> "Patch":
         """The patch on the section of a beam. Raises InputError for a beam that is not rectangular."""
@@ -93,10 +88,10 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
 
     @property
     def laminate(self) -> Laminate:
-        """The transformed section over the patch, real parts of its moduli. Raises InputError without a beam."""
-        (width, h), t, n = self._sizes, self.thickness, self.sides
+        """The transformed section over the patch. Raises InputError without a beam."""
+        (width, h), t, n, ceramic = self._sizes, self.thickness, self.sides, self.ceramic
         bare = piece_of(set_fields(self.substrate), 1.0, "patch.substrate", 0.33)  # type: ignore[arg-type]
-        layer, mass = (1.0 / self._constants[0]).real * width * t, self.ceramic.density * width * t
+        layer, mass = width * t / ceramic.derived.s11, width * t * ceramic.density
         axial, distance = bare.axial_stiffness + n * layer, 0.5 * (h + t)
         offset = layer * distance / axial if n == 1 else 0.0
         lever = distance - offset
@@ -112,24 +107,18 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         )
 
     @property
-    def moment_per_volt(self) -> complex:
-        """B = -n e31 width lever, N m/V: bending moment on the section per volt, curvature w'' > 0 positive."""
-        return -self.sides * self._constants[1] * self._sizes[0] * self.laminate.lever
+    def moment_per_volt(self) -> float:
+        """B = -n e31 width lever, N m/V, e31 = d31/s11E: bending moment per volt, curvature w'' > 0 positive."""
+        derived = self.ceramic.derived
+        return -self.sides * derived.d31 / derived.s11 * self._sizes[0] * self.laminate.lever
 
     @property
     def capacitance(self) -> complex:
         """C at equal slopes of both ends, F: n epsS area/t, and for a unimorph the charge of its free extension."""
-        _, e31, permittivity = self._constants
-        (width, _), n = self._sizes, self.sides
-        extension = (e31 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
-        return self.length * (n * permittivity * width / self.thickness + extension)
-
-    @property
-    def induced_stiffening(self) -> float:
-        """Relative increase of EI by the field that bending induces within a layer, which the laminate neglects."""
-        _, e31, permittivity = self._constants
-        second_moment = self.sides * self._sizes[0] * self.thickness**3 / 12.0
-        return (e31**2 / permittivity).real * second_moment / self.laminate.bending_stiffness
+        one, (width, _), n = self.ceramic.derived, self._sizes, self.sides
+        clamped = one.eps33 * (1.0 - 1j * self.dielectric_loss) - one.d31**2 / one.s11  # epsS
+        extension = (one.d31 / one.s11 * width) ** 2 / self.laminate.axial_stiffness if n == 1 else 0.0
+        return self.length * (n * clamped * width / self.thickness + extension)
 
     def port(self, omega: Any) -> Port:
         """Moments +F and -F at the right and left end, v the rate of the difference of the slopes there, rad/s.

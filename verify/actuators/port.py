@@ -30,10 +30,6 @@ class Port(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """-F/v with an electrical admittance (S) across the electrodes: Z + B^2 / (Y + Y_el); open-circuited for 0."""
         return self.short_impedance + self.force_factor**2 / (self.blocked_admittance + shunt_admittance)
 
-    def admittance(self, load_impedance: Any = 0.0) -> Any:
-        """I/V with a mechanical load F = Z_load v, S: Y + B^2 / (Z + Z_load); free for 0."""
-        return self.blocked_admittance + self.force_factor**2 / (self.short_impedance + load_impedance)
-
 
 class Actuator(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An actuator with one electrical and one mechanical port. Values; subclasses give the port."""

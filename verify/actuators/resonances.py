@@ -1,24 +1,24 @@
 """Resonances, antiresonances, coupling, impedance and circuit branches of a transducer whose tip is free.
 
-The frequencies are those without losses. The count of W. Wittrick and F. Williams (Q. J. Mech. Appl. Math. 24:263,
-1971) brackets each of them, so that none is missed; a motion that the voltage does not excite has no electrical
-resonance and is left out.
+The frequencies are those without losses. The impedance at the tip, Z with short-circuited and Z + B^2/Y with open
+electrodes, is then i X, where X rises between its poles (R. Foster, Bell Syst. Tech. J. 3:259, 1924), so that the phase
+atan(X) rises steadily and passes a multiple of pi at each natural frequency. A motion that the voltage does not excite
+has no electrical resonance and is left out, as is a suspension mode below a millionth of the first half wave.
 """
 
-from math import gcd, pi, sqrt, tan
+from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.actuators.port import Actuator
-from verify.actuators.transducers import Longitudinal, Parts
+from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.validation import check_integer, check_type
 
 if TYPE_CHECKING:
     from verify.arrays import Array
 
-SPLIT = 0.381966  # node within each line, whose clamped modes then coincide with no mode of the transducer
-POLISHED = 1e-7  # relative half width in which a frequency is polished
 UNCOUPLED = 1e-8  # relative distance of resonance and antiresonance, k_eff^2/2, below which a mode is not electrical
+STEPS = 3001  # of frequency in a half wave: sections that differ a thousandfold reflect within some of them
 
 
 class Branch(NamedTuple):
@@ -65,82 +65,40 @@ def branch(actuator: Longitudinal, mode: int = 1) -> Branch:
 def _frequencies(actuator: Longitudinal, count: int) -> "tuple[Array, Array]":
     """(resonances, antiresonances), the first `count` of each, Hz. Raises InputError."""
     import numpy as np
-    from scipy.optimize import bisect, brentq
 
     check_type("actuator", actuator, Longitudinal)
     check_integer("count", count, 1)
-    lossless, rigid = actuator.lossless, int(actuator.base == "free")
-    parts = lossless.parts
-    # the count is lost in rounding far below the first mode, and at half waves of a line: 0.48 is not 0.5
-    scale = 0.48 / sum(line.length / complex(line.speed).real for line in parts if line is not None)
-    lowest = 1e-6 * scale
-
-    def mode(number: int, is_open: bool) -> float:
-        """Frequency of an elastic mode, from 1, Hz."""
-
-        def excess(f: float) -> float:
-            return _modes_below(actuator, parts, 2.0 * pi * f, is_open) - rigid - number + 0.5
-
-        def rising(f: float) -> float:
-            port = lossless.port(2.0 * pi * f)
-            zero, pole = port.short_impedance, port.blocked_admittance * port.short_impedance + port.force_factor**2
-            return complex(pole / zero if is_open else zero / pole).imag
-
-        if excess(lowest) > 0.0:
-            raise InputError(f"actuator.base = {actuator.base!r}: so soft a spring is lost in rounding, give 'free'")
-        upper = scale
-        while excess(upper) < 0.0:
-            upper *= 2.0
-        f = float(bisect(excess, lowest, upper, xtol=1e-15 * scale, rtol=1e-15))
-        low, high = f * (1.0 - POLISHED), f * (1.0 + POLISHED)  # where nodes coincide, the count loses half the digits
-        return float(brentq(rising, low, high, xtol=1e-15 * f, rtol=1e-15)) if rising(low) < 0.0 < rising(high) else f
-
-    short, open_ = list[float](), list[float]()
-    while True:
-        short.append(mode(len(short) + 1, False))
-        open_.append(mode(len(open_) + 1, True))
-        # the electrodes add stiffness of rank 1: an uncoupled mode is as far up in `open_` as in `short`, or one before
-        alike = np.isclose(np.array(short)[:, None], open_, rtol=UNCOUPLED, atol=0.0)
-        coupled = np.array(short)[~alike.any(axis=1)][:count], np.array(open_)[:-1][~alike.any(axis=0)[:-1]][:count]
-        if min(map(len, coupled)) == count:
-            return coupled
+    lossless = actuator.lossless
+    lines = [(line, line.layers if line is lossless.parts.active else 1) for line in lossless.parts if line]
+    # modes of plain bars are at multiples of 0.5: at a step of the grid their sign is lost in rounding
+    half_wave = 0.4987 / sum(layers * line.length / complex(line.speed).real for line, layers in lines)
+    for halves in range(count + 1, 32 * (count + 1), count + 1):
+        grid = half_wave * np.append(np.geomspace(1e-6, 1.0 / STEPS, 100)[:-1], np.arange(1, halves * STEPS) / STEPS)
+        short, open_ = (_zeros(lossless, grid, is_open) for is_open in (False, True))
+        alike = np.isclose(short[:, None], open_, rtol=UNCOUPLED, atol=0.0)
+        coupled = short[~alike.any(axis=1)], open_[~alike.any(axis=0)]
+        if min(map(len, coupled)) > count:  # one more: the range may end between two that are alike
+            return coupled[0][:count], coupled[1][:count]
+    raise InputError(f"actuator.material = {actuator.ceramic!r} excites no resonance {count}, check e31 and e33")
 
 
-def _modes_below(actuator: Longitudinal, parts: Parts, omega: float, is_open: bool) -> int:
-    """Number of natural frequencies below omega, the rigid motion included.
-
-    It is that of the clamped modes of the chain's elements plus that of negative eigenvalues of its dynamic stiffness.
-    Each line has two elements, each stack two groups of layers that are periodic lines.
-    """
+def _zeros(lossless: Longitudinal, grid: "Array", is_open: bool) -> "Array":
+    """Natural frequencies within the range of `grid`, Hz."""
     import numpy as np
+    from scipy.optimize import brentq
 
-    active = parts.active
-    electrical = complex(active.force_factor**2 / active.capacitance).real
-    count, node, stiffness = 0, 0, np.zeros((7, 7))
-    for line in (one for one in parts if one is not None):
-        layers = active.layers if line is active else 1
-        # odd and prime to the number of layers: a mode with nodes at the ends of the group is lost in rounding
-        group = next(one for one in range(round(SPLIT * layers) | 1, layers + 1, 2) if gcd(one, layers) == 1)
-        for share, size in ((SPLIT, 1), (1.0 - SPLIT, 1)) if layers == 1 else ((1.0, group), (1.0, layers - group)):
-            half = 0.5 * omega * share * line.length / complex(line.speed).real
-            rigidity = omega * complex(line.impedance).real
-            stretch, shift = rigidity / tan(half), -rigidity * tan(half)  # of both ends apart, and of both alike
-            own, transfer = 0.5 * (stretch + shift), 0.5 * (stretch - shift)
-            count += size * int(2.0 * half // pi)
-            if layers > 1:  # its speed is that with open electrodes; closed ones soften it
-                stretch -= 2.0 * electrical
-                within = np.cos(np.arange(1, size) * pi / size)
-                count += int(np.sum(stretch * (1.0 - within) + shift * (1.0 + within) < 0.0))
-                phase = 2.0 * np.arctan(np.sqrt(complex(-shift / (stretch or 1e-300))))
-                scale = 0.5 * (stretch - shift) * np.sin(phase)
-                own, transfer = (scale / np.tan(size * phase)).real, (scale / np.sin(size * phase)).real
-            stiffness[node : node + 2, node : node + 2] += [[own, -transfer], [-transfer, own]]
-            node += 1
-    first = 0 if parts.back is None else 2
-    softening = -electrical if active.along and active.layers == 1 else 0.0
-    across = softening + (electrical / active.layers if is_open else 0.0)
-    stiffness[np.ix_([first, first + 2], [first, first + 2])] += [[across, -across], [-across, across]]
-    stiffness[0, 0] += actuator.base if isinstance(actuator.base, float) else 0.0
-    fixed = int(actuator.base == "fixed")
-    free = stiffness[fixed : node + 1, fixed : node + 1]
-    return count + int(np.sum(np.linalg.eigvalsh(free) < 0.0))
+    unit = complex(lossless.parts.active.impedance).real
+
+    def reactance(f: Any) -> Any:
+        port = lossless.port(2.0 * pi * f)
+        return (port.loaded_impedance() if is_open else port.short_impedance).imag / unit
+
+    phase = np.arctan(reactance(grid))
+    while (steep := np.flatnonzero(np.diff(phase) % pi > 0.5)).size:  # until no step holds a pole and a zero
+        more = 0.5 * (grid[steep] + grid[steep + 1])
+        more = more[(more > grid[steep]) & (more < grid[steep + 1])]
+        if not more.size:
+            break
+        grid, phase = np.insert(grid, steep + 1, more), np.insert(phase, steep + 1, np.arctan(reactance(more)))
+    at = np.flatnonzero((phase[:-1] < 0.0) & (phase[1:] >= 0.0) & (np.diff(phase) < 0.5 * pi))
+    return np.array([brentq(reactance, grid[i], grid[i + 1], xtol=1e-15 * grid[i], rtol=1e-15) for i in at])

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from verify.actuators.patch import Patch
     from verify.linear.modes import Modes
 
-Circuit = Literal["resistor", "resistor-loss", "series", "parallel", "hagood", "negative-series", "negative-parallel"]
-"""Shunts with an optimum: least peak by a resistor, a series or parallel R-L circuit, or a resistor in series or
-parallel with a negative capacitance; most loss by a resistor; the transfer-function rule of Hagood and von Flotow."""
+Circuit = Literal["resistor", "resistor-loss", "series", "parallel", "hagood", "negative-parallel"]
+"""Shunts with an optimum: least peak by a resistor, a series or parallel R-L circuit, or a resistor in parallel with a
+negative capacitance; most loss by a resistor; the transfer-function rule of Hagood and von Flotow."""
 Connection = Literal["series", "parallel"]
 
 
@@ -86,14 +86,6 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         validate(self, "mode")
 
     @classmethod
-    def measured(cls, short_hz: float, open_hz: float, capacitance: float) -> "ShuntedMode":
-        """The mode of a structure from its frequencies with short-circuited and open electrodes. Raises InputError."""
-        check_number("short_hz", short_hz, "hertz", above=0)
-        check_number("open_hz", open_hz, "hertz", above=float(short_hz))
-        ratio = sqrt((open_hz - short_hz) * (open_hz + short_hz)) / short_hz
-        return cls(coupling=ratio, omega=2.0 * pi * short_hz, capacitance=capacitance)
-
-    @classmethod
     def bonded(cls, modes: "Modes", patch: "Patch", position: float, number: int) -> "ShuntedMode":
         """A mode, from 1, of the beam from `patch.on`, with a patch centred at `position` (m).
 
@@ -101,7 +93,7 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         neglect of those beyond `modes` falls with 1/n_modes. Raises InputError for a mode without coupling.
         """
         ends = [position - 0.5 * patch.length, position + 0.5 * patch.length]
-        turning = patch.moment_per_volt.real * modes.slope(ends) @ [-1.0, 1.0]
+        turning = patch.moment_per_volt * modes.slope(ends) @ [-1.0, 1.0]
         squares = (2.0 * pi * modes.frequencies_hz) ** 2
         own = squares[number - 1]
         others = squares != own
@@ -121,16 +113,14 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         """Largest |H| over all frequencies, infinite without damping. Raises InputError for an unstable load."""
         import numpy as np
         from numpy.polynomial import Polynomial
-        from scipy.optimize import minimize_scalar
 
-        own = Polynomial([0.0, self.omega * self.capacitance])  # in s/omega, as all below
-        s = Polynomial([0.0, 1.0])
+        own, s = Polynomial([0.0, self.omega * self.capacitance]), Polynomial([0.0, 1.0])  # in s/omega, as all below
         above, below = (Polynomial(one)(self.omega * s) for one in load.rational)
         if above.coef[0] == 0.0:  # a common root, which is no pole
             own, above = (Polynomial(one.coef[1:]) for one in (own, above))
-        whole = own * below + above
-        below = (s**2 + 1.0) * whole + self.coupling**2 * own * below  # H = whole/below
-        poles = below.roots()
+        whole, part = own * below + above, self.coupling**2 * own * below
+        denominator = (s**2 + 1.0) * whole + part  # H = whole/denominator
+        poles = denominator.roots()
         if (poles.real > 1e-12 * abs(poles)).any() or 0.0 in poles:
             raise InputError(
                 f"shunt = {load!r} makes the mode unstable: keep a negative capacitance below the actuator's own in "
@@ -138,46 +128,32 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
             )
         if (poles.real > -1e-13 * abs(poles)).any():
             return inf
-        # a maximum lies within some widths of a pole, where the sinh puts most points
-        around = poles.imag + poles.real * np.sinh(np.linspace(-4.0, 4.0, 81))[:, None]
-        x = self.omega * np.unique(abs(around))
-        x = x[np.diff(x, prepend=0.0) > 1e-12 * x]  # pairs of poles give each point twice but for rounding
-        h = abs(self.response(load, x))
-        peaks = [abs(whole(0.0) / below(0.0))]
-        for i in 1 + np.flatnonzero((h[1:-1] >= h[:-2]) & (h[1:-1] >= h[2:])):
-            step = 0.5 * (x[i + 1] - x[i - 1])
-            middle = x[i - 1] + step  # its offset resolves a peak that is narrower than half the digits of x
-
-            def depth(t: float, middle: float = middle, step: float = step) -> float:
-                return -float(abs(self.response(load, middle + t * step)))
-
-            best = minimize_scalar(depth, bounds=(-1.0, 1.0), method="bounded")
-            peaks.append(-best.fun)
-        return float(max(peaks))
+        x = Polynomial([0.0, 1j])
+        # over x^2 - 1: the peaks of a weakly coupled mode are within K of 0, and nothing cancels
+        squares = [Polynomial((one(x) * one(-x)).coef[::2].real)(s + 1.0) for one in (whole, denominator)]
+        stationary: Any = (squares[0].deriv() * squares[1] - squares[0] * squares[1].deriv()).roots()
+        # all are lower bounds; poles are those of peaks so narrow that the roots above are lost in rounding
+        at = 1j * np.concatenate([[0.0], np.sqrt(abs(1.0 + stationary)), abs(poles.imag)])
+        return float(max(abs(1.0 / (at**2 + 1.0 + part(at) / whole(at)))))
 
     def optimum(self, circuit: Circuit, negative: float | None = None) -> Load:
         """The load of least peak in closed form ("resistor-loss": of largest loss factor at `omega`), ohm and H.
 
-        `negative` is the magnitude of a negative capacitance (F) of the last two circuits. Raises InputError beyond
-        the limit of stability, and where K is too large for an optimum of two equal peaks.
+        `negative` is the magnitude of the negative capacitance (F) of "negative-parallel", below the actuator's. Raises
+        InputError beyond it, and where K is too large for an optimum of two equal peaks.
         """
         check_choice("circuit", circuit, get_args(Circuit))
-        squared, unit_c, unit_l = self.coupling**2, self.capacitance, 1.0 / (self.capacitance * self.omega**2)
-        if (negative is None) == circuit.startswith("negative"):
-            raise InputError(
-                f"negative = {negative!r}: give it for negative-series and negative-parallel, and only there"
-            )
+        k, squared = self.coupling, self.coupling**2
+        if (negative is None) == (circuit == "negative-parallel"):
+            raise InputError(f"negative = {negative!r}: give it for negative-parallel, and only there")
         limit = {"series": 1.127, "parallel": 1.414}.get(circuit, inf)  # there the peak falls to the static deflection
-        if self.coupling > limit:
-            raise InputError(f"coupling = {self.coupling!r} has no optimum of two equal peaks: give at most {limit}")
-        connection: Connection = "parallel" if circuit.endswith("parallel") else "series"
-        p = 0.0
-        if circuit == "resistor":
-            r = sqrt(2.0 / (2.0 + squared))
-        elif circuit == "resistor-loss":
+        if k > limit:
+            raise InputError(f"coupling = {k!r} has no optimum of two equal peaks: give at most {limit}")
+        p, left = 0.0, 1.0
+        if circuit == "resistor-loss":
             r = 1.0 / sqrt(1.0 + squared)
         elif circuit == "hagood":
-            p, r = 1.0 / (1.0 + squared), sqrt(2.0) * self.coupling / (1.0 + squared)
+            p, r = 1.0 / (1.0 + squared), sqrt(2.0) * k / (1.0 + squared)
         elif circuit == "series":
             root = 64.0 - 16.0 * squared - 26.0 * squared**2
             rest = squared * (32.0 + 27.0 * squared) / (8.0 * (8.0 + squared + sqrt(root)))  # 1 - b
@@ -185,21 +161,17 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
             r = p * sqrt(6.0 * rest)
         elif circuit == "parallel":
             p, r = self._parallel()
-        # a resistor beside a negative capacitance: its limits 0 and infinity have one response at the crossing
-        elif circuit == "negative-parallel":  # C - negative remains of the actuator, K^2 grows by its inverse
-            check_number("negative", negative, "farad, below the actuator's capacitance", above=0, below=unit_c)
-            ratio = 1.0 - (negative or 0.0) / unit_c
-            r = 1.0 / (ratio * sqrt(1.0 + 0.5 * squared / ratio))
-        else:  # static stiffness 1 - K^2/(negative/C - 1) stays positive
-            least = (1.0 + squared) * unit_c
-            check_number("negative", negative, "farad, above (1 + K^2) times the actuator's capacitance", above=least)
-            ratio = 1.0 - unit_c / (negative or least)
-            r = ratio / sqrt(1.0 + squared - 0.5 * squared / ratio)
+        else:  # the limits 0 and infinity of a resistor have one response at the frequency of the optimum's peak
+            if negative is not None:  # the rest of the actuator's capacitance, by whose inverse K^2 grows
+                limits = {"above": 0, "below": self.capacitance}
+                check_number("negative", negative, "farad, below the actuator's capacitance", **limits)
+                left = 1.0 - negative / self.capacitance
+            r = 1.0 / (left * sqrt(1.0 + 0.5 * squared / left))
         return Load(
-            resistance=r * self.omega * unit_l,
-            inductance=p * unit_l or None,
+            resistance=r / (self.capacitance * self.omega),
+            inductance=p / (self.capacitance * self.omega**2) or None,
             capacitance=-negative if negative else None,
-            connection=connection,
+            connection="parallel" if circuit.endswith("parallel") else "series",
         )
 
     def _parallel(self) -> tuple[float, float]:

@@ -1,9 +1,10 @@
 """Longitudinal transducers with one tip: bars, the stack of layers, the Langevin transducer.
 
-A base, a passive or piezoelectric line, and the tip, whose outward velocity and force are the mechanical port.
+A base, passive and piezoelectric lines, and the tip, whose outward velocity and force are the mechanical port.
 """
 
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import msgspec
@@ -12,14 +13,13 @@ from msgspec.structs import replace
 
 from verify.actuators.materials import PIEZO, Direction, Form, MaterialName, PiezoMaterial
 from verify.actuators.port import Actuator, Port
+from verify.errors import InputError
 from verify.validation import Relative, unit, validate
 
 if TYPE_CHECKING:
     from verify.actuators.bar import Line, PiezoLine
 
 Base = Literal["fixed", "free"] | Annotated[float, unit("N/m", gt=0)]
-Loss = Annotated[Relative, unit("loss tangent", ge=0, lt=1)]
-LOSSES = ("dielectric_loss", "mechanical_loss", "piezoelectric_loss")
 
 
 class Parts(NamedTuple):
@@ -31,18 +31,23 @@ class Parts(NamedTuple):
 
 
 class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
-    """What all longitudinal transducers share. Raises InputError for values outside their limits."""
+    """What all longitudinal transducers share.
+
+    Losses are those of the strain-charge form, which catalogues measure: sE (1 - i/Q), d (1 - i p), epsT (1 - i tan
+    delta) with e^{+i omega t} (R. Holland, IEEE Trans. Sonics Ultrason. 14:18, 1967). Raises InputError for values
+    outside their limits, and for a piezoelectric loss that makes the ceramic a source of energy.
+    """
 
     material: MaterialName | PiezoMaterial = "pzt-4"
     """Piezoelectric ceramic: pzt-4, pzt-8, or a table of its constants."""
     base: Base = "free"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
-    dielectric_loss: Loss | None = None
-    """tan delta of the free ceramic; default: the material's."""
-    mechanical_loss: Loss | None = None
-    """1/Q of the ceramic; default: the material's."""
-    piezoelectric_loss: Annotated[Relative, unit("loss tangent", gt=-1, lt=1)] | None = None
-    """Loss tangent of d31 and d33; default: the material's."""
+    dielectric_loss: Annotated[Relative, unit("tan delta", ge=0, lt=1)] = 0.0
+    """tan delta of the free ceramic."""
+    mechanical_loss: Annotated[Relative, unit("1/Q", ge=0, lt=1)] = 0.0
+    """1/Q with short-circuited electrodes."""
+    piezoelectric_loss: Annotated[Relative, unit("loss tangent", gt=-1, lt=1)] = 0.0
+    """Loss tangent of d31 and d33."""
     form: Form = "mason"
     """Mason's three-port, KLM, or the equivalent circuit: equal, but for the truncation of the circuit."""
     branches: Annotated[int, Meta(ge=1, le=100_000)] = 20
@@ -50,19 +55,34 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def __post_init__(self) -> None:
         validate(self, "actuator")
-        _ = self.ceramic
+        if self.piezoelectric_loss:
+            derived = self.ceramic.derived
+            limit = sqrt(self.dielectric_loss * self.mechanical_loss) / max(derived.k33, derived.k31, 1e-300)
+            if abs(self.piezoelectric_loss) > limit * (1.0 + 1e-12):
+                raise InputError(
+                    f"actuator.piezoelectric_loss = {self.piezoelectric_loss!r} makes the ceramic a source of energy: "
+                    f"give at most sqrt(dielectric_loss mechanical_loss)/k = {limit:.6g}"
+                )
 
-    @cached_property
+    @property
     def ceramic(self) -> PiezoMaterial:
-        """The material with the transducer's own losses. Raises InputError where they make it a source of energy."""
-        material = PIEZO[self.material] if isinstance(self.material, str) else self.material
-        own = {name: value for name in LOSSES if (value := getattr(self, name)) is not None}
-        return replace(material, **own) if own else material
+        """The constants of the material, without losses."""
+        return PIEZO[self.material] if isinstance(self.material, str) else self.material
+
+    def bar_constants(self, direction: Direction) -> tuple[complex, complex, complex]:
+        """(sE, d, epsT33) of a slender bar with losses: 1/Pa, C/N, F/m."""
+        real = self.ceramic.derived
+        compliance, d = (real.s33, real.d33) if direction == "33" else (real.s11, real.d31)
+        return (
+            compliance * (1.0 - 1j * self.mechanical_loss),
+            d * (1.0 - 1j * self.piezoelectric_loss),
+            real.eps33 * (1.0 - 1j * self.dielectric_loss),
+        )
 
     @property
     def lossless(self) -> "Longitudinal":
         """The transducer without losses."""
-        return replace(self, **dict.fromkeys(LOSSES, 0.0))
+        return replace(self, dielectric_loss=0.0, mechanical_loss=0.0, piezoelectric_loss=0.0)
 
     @cached_property
     def parts(self) -> Parts:
@@ -76,10 +96,27 @@ class Longitudinal(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         port = active.three_port(omega).port(base if back is None else back.input_impedance(omega, base))
         return port if front is None else front.after(omega, port)
 
-    def _piezo(self, direction: Direction, **sizes: Any) -> "PiezoLine":
-        from verify.actuators.bar import piezo_line
+    def _line(self, direction: Direction, *, length: float, area: float, gap: float, layers: int = 1) -> "PiezoLine":
+        """A bar of cross-section `area` (m^2), or equal layers; `gap` (m) is the distance of the electrodes.
 
-        return piezo_line(self.ceramic, direction, form=self.form, branches=self.branches, **sizes)
+        C0 = epsT (1 - k^2) A l/gap^2 and N = d A/(sE gap).
+        """
+        from verify.actuators.bar import PiezoLine
+
+        compliance, d, permittivity = self.bar_constants(direction)
+        clamped, density = 1.0 - d**2 / (compliance * permittivity), self.ceramic.density
+        speed = (density * compliance * (clamped if direction == "33" else 1.0)) ** -0.5
+        return PiezoLine(
+            impedance=density * speed * area,
+            speed=speed,
+            length=length,
+            capacitance=permittivity * clamped * area * length / gap**2,
+            force_factor=d * area / (compliance * gap),
+            along=direction == "33",
+            form=self.form,
+            branches=self.branches,
+            layers=layers,
+        )
 
 
 class Bar33(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="bar-33"):
@@ -93,7 +130,7 @@ class Bar33(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     @cached_property
     def parts(self) -> Parts:
         """The bar."""
-        return Parts(None, self._piezo("33", length=self.length, area=self.area, gap=self.length), None)
+        return Parts(None, self._line("33", length=self.length, area=self.area, gap=self.length), None)
 
 
 class Bar31(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="bar-31"):
@@ -109,16 +146,16 @@ class Bar31(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     @cached_property
     def parts(self) -> Parts:
         """The bar."""
-        area, gap = self.width * self.thickness, self.thickness
-        return Parts(None, self._piezo("31", length=self.length, area=area, gap=gap), None)
+        area = self.width * self.thickness
+        return Parts(None, self._line("31", length=self.length, area=area, gap=self.thickness), None)
 
 
 class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="stack"):
     """Layers of alternating polarity, mechanically in series and electrically in parallel, on a fixed base.
 
-    The layers have the voltage in common, so that their waves have the speed of short-circuited electrodes. The bar
-    with a common electric displacement, C0 -> n^2 C0 and h -> h/n, has the same stiffness, mass and force factor, but
-    its resonances are up to 5 % higher in PZT-4. Bonds and electrodes are left out.
+    The layers have the voltage in common, so that their waves have the speed of short-circuited electrodes. The usual
+    single bar with a common electric displacement, C0 -> n^2 C0 and h -> h/n, has the same stiffness, mass and force
+    factor, but its resonances are up to 5 % higher in PZT-4. Bonds and electrodes are left out.
     """
 
     layers: Annotated[int, Meta(ge=1)]
@@ -127,17 +164,14 @@ class Stack(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True,
     """m."""
     area: Annotated[float, unit("m^2", gt=0)]
     """Area of its section, m^2."""
-    layering: Literal["layers", "one-bar"] = "layers"
-    """layers: exact; one-bar: as a single bar, well below the first resonance."""
     base: Base = "fixed"
     """Support of the far end: fixed, free, or the stiffness of a spring, N/m."""
 
     @cached_property
     def parts(self) -> Parts:
         """The layers."""
-        joined, layers = (self.layers, 1) if self.layering == "one-bar" else (1, self.layers)
         gap = self.layer_thickness
-        return Parts(None, self._piezo("33", length=joined * gap, area=self.area, gap=gap, layers=layers), None)
+        return Parts(None, self._line("33", length=gap, area=self.area, gap=gap, layers=self.layers), None)
 
 
 class EndMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -151,18 +185,9 @@ class EndMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """rho, kg/m^3."""
     area: Annotated[float, unit("m^2", gt=0)] | None = None
     """Area of its section, m^2; default: that of the rings."""
-    loss_factor: Loss = 0.0
-    """E (1 + i eta)."""
 
     def __post_init__(self) -> None:
         validate(self, "actuator.mass")
-
-    def line(self, area: float) -> "Line":
-        """The mass as a line; `area` (m^2) is that of the rings."""
-        from verify.actuators.bar import Line
-
-        speed = (self.youngs_modulus * (1.0 + 1j * self.loss_factor) / self.density) ** 0.5
-        return Line(impedance=self.density * speed * (self.area or area), speed=speed, length=self.length)
 
 
 class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="kind", tag="langevin"):
@@ -182,18 +207,18 @@ class Langevin(Longitudinal, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     back: EndMass | None = None
     """Mass at the base; default: that of the tip."""
 
-    @property
-    def lossless(self) -> "Langevin":
-        """The transducer without losses."""
-        masses = {name: replace(mass, loss_factor=0.0) for name in ("front", "back") if (mass := getattr(self, name))}
-        return replace(self, **dict.fromkeys(LOSSES, 0.0), **masses)
-
     @cached_property
     def parts(self) -> Parts:
         """Back mass, rings, front mass."""
-        gap = self.ring_thickness
-        rings = self._piezo("33", length=gap, area=self.area, gap=gap, layers=self.rings)
-        return Parts((self.back or self.front).line(self.area), rings, self.front.line(self.area))
+        from verify.actuators.bar import Line
+
+        gap, masses = self.ring_thickness, (self.back or self.front, self.front)
+        speeds = [(mass.youngs_modulus / mass.density) ** 0.5 for mass in masses]
+        back, front = (
+            Line(impedance=mass.density * speed * (mass.area or self.area), speed=speed, length=mass.length)
+            for mass, speed in zip(masses, speeds, strict=True)
+        )
+        return Parts(back, self._line("33", length=gap, area=self.area, gap=gap, layers=self.rings), front)
 
 
 Transducer: TypeAlias = Stack | Bar33 | Bar31 | Langevin

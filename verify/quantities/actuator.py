@@ -1,10 +1,11 @@
 """Quantities of the scene's transducer, drive.actuator, with a free tip."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
 from verify.actuators import resonances
+from verify.actuators.port import Actuator
 from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.quantities.base import Scene, quantity
@@ -16,39 +17,40 @@ Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency, Hz")]
 DRIVE = ("drive",)
 
 
-def _transducer(scene: Scene) -> Longitudinal:
-    """The scene's transducer. Raises InputError where it has none."""
+def scene_actuator(scene: Scene, kind: type = Actuator, example: str = "stack") -> Any:
+    """The scene's actuator. Raises InputError where it has none of this kind."""
     actuator = scene.drive.actuator if scene.drive is not None else None
-    if not isinstance(actuator, Longitudinal):
-        raise InputError("drive.actuator is missing: add [drive.actuator] with kind = 'stack', layers and their sizes")
+    if not isinstance(actuator, kind):
+        what = "missing" if actuator is None else "of another kind"
+        raise InputError(f"drive.actuator is {what}: add [drive.actuator] with kind = {example!r} and its sizes")
     return actuator
 
 
 @quantity("actuator.resonance", unit="Hz", reads=DRIVE)
 def resonance(scene: Scene, *, n: Resonance = 1) -> float:
     """Frequency of the transducer with short-circuited electrodes, without losses."""
-    return float(resonances.resonances(_transducer(scene), n)[-1])
+    return float(resonances.resonances(scene_actuator(scene, Longitudinal), n)[-1])
 
 
 @quantity("actuator.antiresonance", unit="Hz", reads=DRIVE)
 def antiresonance(scene: Scene, *, n: Resonance = 1) -> float:
     """Frequency of the transducer with open electrodes, without losses."""
-    return float(resonances.antiresonances(_transducer(scene), n)[-1])
+    return float(resonances.antiresonances(scene_actuator(scene, Longitudinal), n)[-1])
 
 
 @quantity("actuator.coupling", unit="1", reads=DRIVE)
 def coupling(scene: Scene, *, n: Resonance = 1) -> float:
     """Effective electromechanical coupling factor, sqrt(1 - (f_r/f_a)^2)."""
-    return resonances.coupling(_transducer(scene), n)
+    return resonances.coupling(scene_actuator(scene, Longitudinal), n)
 
 
 @quantity("actuator.impedance", unit="ohm", reads=DRIVE)
 def impedance(scene: Scene, *, frequency_hz: Hertz) -> complex:
     """Electrical impedance of the transducer with its losses."""
-    return complex(resonances.impedance(_transducer(scene), frequency_hz))
+    return complex(resonances.impedance(scene_actuator(scene, Longitudinal), frequency_hz))
 
 
 @quantity("actuator.branch", unit="F or H", reads=DRIVE)
 def branch(scene: Scene, *, n: Resonance = 1, element: Element = "capacitance") -> float:
     """Capacitance or inductance of a branch of the equivalent circuit (Butterworth and Van Dyke)."""
-    return float(getattr(resonances.branch(_transducer(scene), n), element))
+    return float(getattr(resonances.branch(scene_actuator(scene, Longitudinal), n), element))

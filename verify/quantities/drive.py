@@ -1,14 +1,16 @@
 """Quantities of actuators on a driven beam: force per volt, power, and the wave under voltages."""
 
-from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 from msgspec.structs import replace
 
+from verify.actuators.patch import Patch
+from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.quantities import options as opt
+from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Scene, quantity
 from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured
 
@@ -20,17 +22,11 @@ if TYPE_CHECKING:
 Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.force, then in drive.shunt, from 1")]
 
 
-def _port(scene: Scene, frequency_hz: float | None, patch: bool = False) -> "tuple[Port, float]":
-    """(port of the scene's actuator, rad/s)."""
-    from verify.actuators.patch import Patch
-
-    actuator = scene.drive.actuator if scene.drive else None
-    if actuator is None:
-        raise InputError("drive.actuator is missing: give the design of an actuator, its kind and sizes")
-    if isinstance(actuator, Patch) != patch:
-        raise InputError("drive.actuator: a patch has drive.moment_per_volt, all others have drive.force_per_volt")
+def _port(scene: Scene, frequency_hz: float | None) -> "tuple[Port, float]":
+    """(port of the scene's transducer, rad/s)."""
     omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
-    return (actuator.bonded(scene.beam) if isinstance(actuator, Patch) else actuator).port(omega), omega
+    actuator: Longitudinal = scene_actuator(scene, Longitudinal)
+    return actuator.port(omega), omega
 
 
 @quantity("drive.force_per_volt", unit="N/V", reads=DRIVEN, devices=True)
@@ -42,7 +38,8 @@ def force_per_volt(scene: Scene, *, frequency_hz: opt.Frequency | None = None) -
 @quantity("drive.moment_per_volt", unit="N m/V", reads=DRIVEN, devices=True)
 def moment_per_volt(scene: Scene) -> float:
     """Magnitude of the bending moment of a patch per volt."""
-    return abs(complex(_port(scene, None, patch=True)[0].force_factor))
+    patch: Patch = scene_actuator(scene, Patch, "patch")
+    return abs(patch.bonded(scene.beam).moment_per_volt)
 
 
 @quantity("drive.impedance_ratio", unit="1", reads=DRIVEN, devices=True)
@@ -59,21 +56,20 @@ def _voltages(options: FieldOptions) -> FieldOptions:
     return replace(options, drive="voltage") if options.drive is None else options
 
 
-VOLTAGES = {
-    "ratio": ("standing_wave_ratio", "Standing-wave ratio with the drive's amplitudes as voltages of its actuators."),
-    "direction": ("direction", "Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x."),
-}
+@quantity("wave.voltage_ratio", unit="1", reads=DRIVEN, devices=True)
+def voltage_ratio(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Standing-wave ratio with the drive's amplitudes as voltages of its actuators."""
+    return measured(driven_case(scene, _voltages(options)), cache, window).standing_wave_ratio
 
 
-def _of_waves(figure: str) -> Callable[..., float]:
-    def of_waves(scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None) -> float:
-        return float(getattr(measured(driven_case(scene, _voltages(options)), cache, window).waves, figure))
-
-    return of_waves
-
-
-for _name, (_figure, _text) in VOLTAGES.items():
-    quantity(f"wave.voltage_{_name}", unit="1", summary=_text, reads=DRIVEN, devices=True)(_of_waves(_figure))
+@quantity("wave.voltage_direction", unit="1", reads=DRIVEN, devices=True)
+def voltage_direction(
+    scene: Scene, cache: "SolutionCache", options: FieldOptions, *, window: Window | None = None
+) -> float:
+    """Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x."""
+    return float(measured(driven_case(scene, _voltages(options)), cache, window).waves.direction)
 
 
 @quantity("wave.pure_voltage_phase", unit="deg", reads=DRIVEN, devices=True)

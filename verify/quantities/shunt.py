@@ -12,49 +12,43 @@ from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
+from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Place, Scene, quantity
 from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
 
-Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with these electrodes, Hz")]
+Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with short-circuited electrodes")]
 Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
 Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
-Figure = Literal["resistance", "inductance"]
+Figure = Annotated[Literal["resistance", "inductance"], Meta(description="ohm or H")]
 
 
 class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """A mode with an actuator, and its shunt. Without short_hz and capacitance, loads are in units of both."""
+    """A mode with an actuator, and its shunt: coupling K, or a mode of the beam under the scene's patch."""
 
     circuit: Annotated[Circuit, Meta(description="shunt; hagood: series R-L by the transfer-function rule")] = "series"
-    coupling: Annotated[Relative, Meta(gt=0, description="K; default: by open_hz and short_hz")] | None = None
-    short_hz: Hertz | None = None
-    open_hz: Hertz | None = None
-    capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, F")] = 1.0
+    coupling: Annotated[Relative, Meta(gt=0, description="K = sqrt((f_open/f_short)^2 - 1)")] | None = None
+    short_hz: Hertz = 1.0 / (2.0 * pi)
+    capacitance: Annotated[float, unit("F"), Meta(gt=0, description="blocked capacitance, with coupling, F")] = 1.0
     negative: Annotated[Relative, Meta(gt=0, description="negative capacitance over the actuator's")] | None = None
     mode: Annotated[int, Meta(ge=1, description="mode of the beam under the scene's patch, for coupling")] | None = None
     position: Annotated[Place, Meta(description="centre of this patch, m from the left end")] | None = None
 
     def best(self, scene: Scene) -> tuple[ShuntedMode, Load]:
         """The mode and the optimum load of the circuit. Raises InputError."""
-        sources = [self.coupling, self.open_hz and self.short_hz, self.mode and self.position]
-        if sum(one is not None for one in sources) != 1:
-            values = f"coupling = {self.coupling!r}, open_hz = {self.open_hz!r}, mode = {self.mode!r}"
-            raise InputError(f"{values}: give coupling, or short_hz and open_hz, or mode and position")
-        if self.mode is not None and self.position is not None:
-            patch: Any = None if scene.drive is None else scene.drive.actuator
-            if not isinstance(patch, Patch):
-                raise InputError(f"mode = {self.mode!r} needs [drive.actuator] with kind = 'patch', or give coupling")
+        if self.coupling is not None and self.mode is None:
+            omega = 2.0 * pi * self.short_hz
+            mode = ShuntedMode(coupling=self.coupling, omega=omega, capacitance=self.capacitance)
+        elif self.coupling is None and self.mode is not None and self.position is not None:
+            patch = scene_actuator(scene, Patch, "patch")
             modes = MODELS[EXACT].build(patch.on(scene.beam, self.position)).modes(self.mode + 60)
             mode = ShuntedMode.bonded(modes, patch.bonded(scene.beam), self.position, self.mode)
-        elif self.open_hz is not None and self.short_hz is not None:
-            mode = ShuntedMode.measured(self.short_hz, self.open_hz, self.capacitance)
         else:
-            omega = 1.0 if self.short_hz is None else 2.0 * pi * self.short_hz
-            mode = ShuntedMode(coupling=self.coupling or 0.0, omega=omega, capacitance=self.capacitance)
+            raise InputError(f"coupling = {self.coupling!r}, mode = {self.mode!r}: give coupling, or mode and position")
         return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * mode.capacitance)
 
 
-def _part(load: Load, figure: Figure) -> float:
+def _part(load: Load, figure: str) -> float:
     """Resistance (ohm) or inductance (H) of an optimum load. Raises InputError where it has none."""
     value: float | None = getattr(load, figure)
     if value is None:
@@ -96,13 +90,10 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tupl
     """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
     from verify.waves.impedance_matching import ending
 
-    actuator = None if scene.drive is None else scene.drive.actuator
-    if not isinstance(actuator, Longitudinal):
-        raise InputError("drive.actuator is missing or a patch: an absorbing actuator acts at a point, give a stack")
     check_number("position", position, "metres from the right end", below=scene.beam.length)
     hertz = opt.drive_frequency(scene, frequency_hz)
     end, omega = ending(scene.beam, hertz, position, scene.beam.supports[1]), 2.0 * pi * hertz
-    port = actuator.port(omega)
+    port = scene_actuator(scene, Longitudinal).port(omega)
     return port, end, absorbing_load(port, end.matched, omega), omega
 
 
@@ -112,7 +103,7 @@ def absorber(
     *,
     position: FromRightEnd,
     frequency_hz: opt.Frequency | None = None,
-    figure: Annotated[Figure, Meta(description="ohm or H")] = "resistance",
+    figure: Figure = "resistance",
 ) -> float:
     """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
     return _part(_absorber(scene, position, frequency_hz)[2], figure)

@@ -253,13 +253,13 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if self.drive is not None:
                 check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
             forces, _, _ = self.forces, self.devices, self.shunts
-            kind, patched = (self.drive.kind, isinstance(self.drive.actuator, Patch)) if self.drive else ("", False)
-            turning = kind == "moment" or (patched and kind != "force")
-            for force in forces if kind != "displacement" else ():
-                acts = dict[str, float](), {"amplitude": force.amplitude}
-                check_free(
-                    "drive.force", force.position, self.beam.length, self.beam.supports, *acts[:: 1 if turning else -1]
-                )
+            kind, actuator = (self.drive.kind, self.drive.actuator) if self.drive else ("force", None)
+            bending = kind in ("voltage", "current") and isinstance(actuator, Patch)  # at its ends
+            for force in forces if not (bending or kind == "displacement") else ():
+                across, turning = {"amplitude": force.amplitude}, dict[str, float]()
+                if kind == "moment":
+                    across, turning = turning, across
+                check_free("drive.force", force.position, self.beam.length, self.beam.supports, across, turning)
             if self.slider is not None:
                 self.slider.initial_position(self.beam)
         except InputError as error:
