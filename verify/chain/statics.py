@@ -253,7 +253,8 @@ def bend(
     if force.shape not in ((1,), (2,)):
         raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
     along, across = (0.0, float(force[0])) if len(force) == 1 else (float(force[0]), float(force[1]))
-    check_number("moment", moment, "N m")
+    for name, value in (("force x", along), ("force y", across), ("moment", moment)):
+        check_number(f"load.{name}", value, "N, N m")
     system = build_system(structs.replace(beam, loss_factor=0.0), count, wall=wall, joints=joints)
     end = LinkLoad(link=count, at=float(system.lengths[-1]), force=(along, across), moment=float(moment))
     relative = _stable_equilibrium(replace(system, loads=(end,)), along, across, float(moment))
