@@ -1,15 +1,125 @@
-"""Parallel evaluation in several processes, with the results of a serial one in the same order."""
+"""Parallel evaluation by an executor: processes of this machine, or the workers of a dask cluster.
+
+Results are those of a serial evaluation, in the same order.
+"""
 
 import os
 import sys
-from collections.abc import Callable, Iterable
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor
+from contextlib import ExitStack, contextmanager, suppress
+from contextvars import ContextVar
+from signal import SIG_IGN, SIGINT, signal
+from typing import Any, TypeVar
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; 1 where it is unset
+CLIENT: ContextVar[Any] = ContextVar("client", default=None)
+"""Client of the cluster inside `with cluster(...)`."""
+PATIENCE = 30.0
+"""Time to reach a scheduler and its first worker, s."""
+
+
+@contextmanager
+def cluster(where: str | int) -> Iterator[None]:
+    """Inside the context `workers` are those of a dask cluster; a task whose worker dies runs again on another.
+
+    `where` is the address of its scheduler, tcp://host:8786, or a number of processes to start on this machine. Raises
+    InputError where dask.distributed is not installed, the scheduler does not respond or has no worker, and for a
+    worker with other versions, which may compute other digits.
+    """
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        remedy = "pip install 'fem-segment-verify[cluster]', or leave it out"
+        raise InputError(f"cluster = {shown(where)}: dask.distributed is not installed, {remedy}") from None
+    with ExitStack() as stack:
+        address: Any = where
+        remedy = "start `dask scheduler` and `dask worker` with verify installed, or correct the address"
+        try:
+            if isinstance(where, int):
+                remedy = "in a script of your own call it below if __name__ == '__main__'"
+                with ExitStack() as starting:
+                    with suppress(ValueError):  # outside of the main thread
+                        starting.callback(
+                            signal, SIGINT, signal(SIGINT, SIG_IGN)
+                        )  # workers leave Ctrl-C to this process
+                    address = LocalCluster(where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
+                stack.enter_context(address)
+            client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
+            client.wait_for_workers(1, timeout=PATIENCE)
+            theirs = client.run(versions)
+        except (OSError, ValueError, ImportError, RuntimeError) as error:
+            raise InputError(f"cluster = {shown(where)} has no usable worker ({error}): {remedy}") from None
+        for worker, found in theirs.items():
+            if found != versions():
+                raise InputError(f"worker {worker} has {found}, this machine {versions()}: install the same versions")
+        token = CLIENT.set(client)
+        try:
+            yield
+        finally:
+            CLIENT.reset(token)
+
+
+@contextmanager
+def workers(most: int, processes: int | None = None, unset: int | None = 1) -> Iterator[Executor | None]:
+    """An executor for `most` items at a time: the cluster's, else of `processes`; default: VERIFY_JOBS, else `unset`.
+
+    None where one process is enough. Raises InputError unless VERIFY_JOBS is a positive integer.
+    """
+    text = str(processes or os.environ.get(VARIABLE, "") or unset)
+    if not (text.isascii() and text.isdigit() and int(text)):
+        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
+    client, n = CLIENT.get(), min(int(text), most)
+    if client is None and n < 2:
+        yield None
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
+    context = get_context("fork" if sys.platform == "linux" else "spawn")
+    executor = client.get_executor(pure=False) if client else ProcessPoolExecutor(n, mp_context=context)
+    try:
+        yield executor
+    except BaseException:
+        executor.shutdown(wait=False)  # on a cluster this cancels what is pending
+        raise
+    executor.shutdown()
+
+
+def completed(
+    function: Callable[[Item], Result], items: Iterable[Item], executor: Executor | None, *, first_here: bool = False
+) -> Iterator[tuple[int, Result]]:
+    """(index, result) of each item as it completes. Function and items must be picklable unless `executor` is None.
+
+    With `first_here` the first item runs in this process, so that forked workers inherit what it compiles. Raises the
+    error of the first item that fails, the others are cancelled; and InputError where a process dies.
+    """
+    todo = list(items)
+    own = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
+    for i, item in enumerate(todo[:own]):
+        yield i, function(item)
+    if executor is None or own == len(todo):
+        return
+    from concurrent.futures import as_completed
+
+    futures = {executor.submit(function, item): i for i, item in enumerate(todo[own:], own)}
+    try:
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    except Exception as error:
+        if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
+            remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file then continues"
+            raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
+        raise
+    finally:
+        if CLIENT.get() is None:  # `shutdown` of a pool that is collected at once may cancel nothing (CPython 3.11)
+            for future in futures:
+                future.cancel()
 
 
 def map_processes(
@@ -18,37 +128,24 @@ def map_processes(
     progress: Callable[[int], None] = lambda done: None,
     max_workers: int | None = None,
 ) -> list[Result]:
-    """`[function(item) for item in items]` in `max_workers` processes; default: VERIFY_JOBS.
+    """`[function(item) for item in items]` by `workers`; `progress` is called with the index of each that completes.
 
-    `progress` is called with the index of each item that completes. The first item runs in this process, so that
-    workers inherit compiled functions and caches. Function and items must be picklable where the platform cannot fork.
-    Raises the error of the first item that fails, pending items are cancelled; and InputError unless VERIFY_JOBS is a
-    positive integer.
+    The first item runs in this process. Raises what `workers` and `completed` raise.
     """
-    text = str(max_workers or os.environ.get(VARIABLE, "") or 1)
-    if not (text.isascii() and text.isdigit() and int(text)):
-        raise InputError(f"{VARIABLE} = {text!r}: give a whole number of processes from 1, or leave it unset")
-    todo = list(items)
-    workers = min(int(text), len(todo) - 1)
-    alone = len(todo) if workers < 2 else 1
-    results = []
-    for i, item in enumerate(todo[:alone]):
-        results.append(function(item))
-        progress(i)
-    if alone == len(todo):
-        return results
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
+    todo, results = list(items), dict[int, Result]()
+    with workers(len(todo) - 1, max_workers) as executor:
+        for i, result in completed(function, todo, executor, first_here=True):
+            results[i] = result
+            progress(i)
+    return [results[i] for i in range(len(todo))]
 
-    # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
-    context = get_context("fork" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        futures = {pool.submit(function, item): i for i, item in enumerate(todo[1:], 1)}
-        try:
-            for future in as_completed(futures):
-                future.result()
-                progress(futures[future])
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return results + [future.result() for future in futures]
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages on which the digits of a result depend."""
+    from importlib.metadata import version
+    from platform import python_version
+
+    from verify import __version__
+
+    packages = {name: version(name) for name in ("numpy", "scipy", "numba", "scikit-fem")}
+    return {"verify": __version__, "Python": python_version(), **packages}

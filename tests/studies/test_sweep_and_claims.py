@@ -1,16 +1,24 @@
 """Sweeps keep the order of their lists and the rows of failures; claims are compared with quantities."""
 
+import os
+import signal
+import subprocess
+import sys
+from time import sleep
+
 import pytest
 from msgspec.structs import replace
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.exact.closed_forms import frequency_hz
-from verify.quantities.base import evaluate
+from verify.parallel import CLIENT, cluster
+from verify.quantities.base import QUANTITIES, evaluate, quantity
 from verify.scene.load import load_scene
 from verify.scene.model import Claim
 from verify.studies.base import studies_of
 from verify.studies.claims import Claims
+from verify.studies.optimise import Optimise, Variable
 from verify.studies.sweep import Sweep
 
 
@@ -81,6 +89,135 @@ def test_sweeps_render(renders):
 def test_wrong_sweeps_are_refused_before_they_run(quantities, over, word):
     with pytest.raises(InputError, match=word):
         run_sweep(PAPER, quantities, over, arguments={"model": "segment"})
+
+
+# --- Executors and files ---
+
+OVER = {"count": [7, 12, 20], "mode": [1, 2, 9], "beam.length": [0.4, 0.7]}  # of seven segments there is no ninth mode
+
+
+def written(
+    file, step=lambda text: None, scene=PAPER, quantities=("mode.frequency", "mode.frequency_error"), over=OVER
+):
+    """(table, contents of the file) of a sweep."""
+    study = Sweep(quantities=quantities, over=over, arguments={"model": "segment"})
+    return study.run(scene, None, step, file).tables[0], file.read_bytes()
+
+
+@pytest.fixture
+def fragile():
+    """A quantity that records its calls in this process, and ends a worker process at the fifth mode."""
+    calls, parent = [], os.getpid()
+
+    @quantity("mode.fragile", unit="1")
+    def fragile_mode(scene, *, mode: int) -> float:
+        """For tests."""
+        if mode == 5 and os.getpid() != parent:
+            sleep(0.3)  # others are complete
+            os.kill(os.getpid(), signal.SIGKILL)
+        calls.append(mode)
+        return 0.1 * mode
+
+    yield calls
+    del QUANTITIES._members["mode.fragile"]
+
+
+def fragile_sweep(file, modes=8):
+    study = Sweep(quantities=("mode.fragile",), over={"mode": list(range(1, modes + 1))})
+    return study.run(PAPER, None, lambda step: None, file).tables[0]
+
+
+def test_one_process_two_and_a_cluster_with_a_killed_worker_write_the_same_file(tmp_path, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setenv("VERIFY_JOBS", "1")
+    alone = written(tmp_path / "one")
+    study = Optimise(
+        quantity="wave.reflection",
+        variable=(Variable(key="phase_deg", low=0.0, high=180.0, start=90.0),),
+        evaluations=30,
+    )
+    wave = load_scene("paper-wave")
+    found = study.run(wave, None, lambda step: None).data
+    monkeypatch.setenv("VERIFY_JOBS", "2")
+    assert written(tmp_path / "two") == alone
+    assert study.run(wave, None, lambda step: None).data == found
+    with cluster(2):
+        first = next(iter(CLIENT.get().cluster.workers.values()))
+        killed = []
+
+        def kill(text):
+            if not killed:
+                killed.append(os.kill(first.pid, signal.SIGKILL))
+
+        assert written(tmp_path / "cluster", kill) == alone
+        assert killed
+        assert study.run(wave, None, lambda step: None).data == found
+    assert CLIENT.get() is None
+
+
+def test_a_sweep_continues_from_its_file(tmp_path, monkeypatch, fragile):
+    monkeypatch.setenv("VERIFY_JOBS", "1")
+    table = fragile_sweep(tmp_path / "whole")
+    text = (tmp_path / "whole").read_bytes()
+    lines = text.splitlines(keepends=True)
+    assert len(lines) == 9
+    fragile.clear()
+    (tmp_path / "cut").write_bytes(b"".join((lines[0], lines[3], lines[1], lines[7][:40])))  # a kill within a line
+    assert fragile_sweep(tmp_path / "cut") == table
+    assert fragile == [2, 4, 5, 6, 7, 8]
+    assert (tmp_path / "cut").read_bytes() == text
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="forks")
+def test_a_killed_process_leaves_the_rows_that_are_complete(tmp_path, monkeypatch, fragile):
+    monkeypatch.setenv("VERIFY_JOBS", "2")
+    file = tmp_path / "rows"
+    with pytest.raises(InputError, match="a worker process was killed"):
+        fragile_sweep(file)
+    assert 2 <= len(file.read_bytes().splitlines()) < 9
+    monkeypatch.setenv("VERIFY_JOBS", "1")
+    assert column(fragile_sweep(file), "mode.fragile") == [0.1 * mode for mode in range(1, 9)]
+
+
+def test_rows_of_another_sweep_are_refused(tmp_path, fragile):
+    file = tmp_path / "rows"
+    fragile_sweep(file, 2)
+    with pytest.raises(InputError, match="other sweep"):
+        fragile_sweep(file, 3)
+    with pytest.raises(InputError, match=r"other .*sha256 of the scene"):
+        Sweep(quantities=("mode.fragile",), over={"mode": [1, 2]}).run(load_scene("paper-wave"), None, print, file)
+    file.write_text("a file of somebody\n")
+    with pytest.raises(InputError, match="other contents"):
+        fragile_sweep(file, 2)
+    assert file.read_text() == "a file of somebody\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_leaves_whole_lines(tmp_path):
+    words = "sweep paper-wave wave.reflection model=segment count=400 phase_deg=1-900 --to rows"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "verify", *words.split()], cwd=tmp_path, stderr=subprocess.PIPE, start_new_session=True
+    )
+    while not (tmp_path / "rows").exists() or (tmp_path / "rows").read_bytes().count(b"\n") < 4:
+        sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.communicate(timeout=60)[1].strip() == b"verify: interrupted"
+    assert process.returncode == 130
+    assert 4 <= (tmp_path / "rows").read_bytes().count(b"\n") < 900
+    assert (tmp_path / "rows").read_bytes().endswith(b"\n")
+
+
+def test_a_cluster_that_does_not_exist_is_refused(monkeypatch):
+    monkeypatch.setattr("verify.parallel.PATIENCE", 0.3)
+    pytest.importorskip("distributed")
+    with pytest.raises(InputError, match="has no usable worker"), cluster("tcp://127.0.0.1:9"):
+        pass
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"pip install 'fem-segment-verify\[cluster\]'"), cluster(1):
+        pass
+
+
+# --- Claims ---
 
 
 def claim(**other):

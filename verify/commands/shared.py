@@ -47,6 +47,24 @@ overrides_option = click.option("--set", "overrides", multiple=True, metavar="KE
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 csv_option = click.option("--csv", "as_csv", is_flag=True, help="Print the first table as CSV, in SI units.")
 markdown_option = click.option("--markdown", "as_markdown", is_flag=True, help="Print the first table as Markdown.")
+
+
+def cluster_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add `--scheduler` and `--local-cluster`, which run the command inside `parallel.cluster`."""
+
+    def enter(ctx: click.Context, option: click.Parameter, where: str | int | None) -> None:
+        from verify.parallel import cluster
+
+        if where is not None:
+            ctx.with_resource(cluster(where))
+
+    hidden: Any = {"callback": enter, "expose_value": False}
+    scheduler = "Run on the workers of this dask scheduler, tcp://HOST:8786 (extra `cluster`)."
+    local, number = "Run on a dask cluster of N processes of this machine.", click.IntRange(min=1)
+    command = click.option("--scheduler", metavar="ADDRESS", help=scheduler, **hidden)(command)
+    return click.option("--local-cluster", metavar="N", type=number, help=local, **hidden)(command)
+
+
 charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG and PNG.")
 
 

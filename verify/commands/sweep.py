@@ -1,5 +1,6 @@
 """`verify sweep`: quantities over values of the scene and of their arguments."""
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -12,17 +13,26 @@ from verify.errors import InputError
 @shared.scene_argument
 @click.argument("words", nargs=-1, metavar="[QUANTITY]... [KEY=VALUES]...")
 @shared.overrides_option
+@click.option("--to", "file", metavar="FILE", help="Append each row to FILE; the same sweep continues from it.")
+@shared.cluster_options
 @shared.charts_option
 @shared.format_options
-def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts: str | None, **formats: bool) -> None:
+def sweep(
+    scene: str,
+    words: tuple[str, ...],
+    overrides: tuple[str, ...],
+    file: str | None,
+    charts: str | None,
+    **formats: bool,
+) -> None:
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
     A KEY with a dot is a value of the scene, one without is an argument of the quantities.
+    FILE has JSON lines: a kill or Ctrl-C loses only what is being computed, the same call computes the rest.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
     from verify.analysis.solution_cache import SolutionCache
-    from verify.commands.table import run_study
-    from verify.convert import typed
+    from verify.convert import convert, typed
     from verify.quantities.base import QUANTITIES
     from verify.scene.load import load_scene, type_at
     from verify.studies.sweep import Sweep
@@ -36,16 +46,15 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], charts
         lists[key] = [typed(one, kind, key) if isinstance(one, str) else one for one in values]
     if len(lists) < len(pairs):
         raise InputError("KEY = VALUES: one key occurs twice, give each once")
-    if not quantities:
-        if lists:
-            raise InputError("QUANTITY is missing: name one before KEY=VALUES, see `verify quantities`")
-        run_study(scene, "sweep", (), overrides, charts, formats)
-        return
+    if lists and not quantities:
+        raise InputError("QUANTITY is missing: name one before KEY=VALUES, see `verify quantities`")
     over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
     loaded = load_scene(scene, overrides)
+    own = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
+    study = own if quantities else loaded.studies.get("sweep") or convert({}, Sweep, "sweep")
+    study.check(loaded)
     with shared.progress(quiet=any(formats.values())) as step:
-        study = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
-        result = study.run(loaded, SolutionCache(loaded.beam), step)
+        result = study.run(loaded, SolutionCache(loaded.beam), step, Path(file) if file else None)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

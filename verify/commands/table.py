@@ -10,6 +10,7 @@ from verify.commands import shared
 @click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
 @click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")
 @shared.overrides_option
+@shared.cluster_options
 @shared.charts_option
 @shared.format_options
 def table(
@@ -19,29 +20,21 @@ def table(
 
     Example: `verify table steel-cantilever modes=1-5 counts=10,20,49 wall=gregory,half`
     """
-    run_study(scene, study, options, overrides, charts, formats)
-
-
-def run_study(
-    scene: str, name: str, options: tuple[str, ...], overrides: tuple[str, ...], charts: str | None,
-    formats: dict[str, bool],
-) -> None:  # fmt: skip
-    """Run a study with the scene's section, or its defaults, and 'key=value' options, and show its result."""
     from verify.analysis.solution_cache import SolutionCache
     from verify.convert import convert
     from verify.errors import InputError
     from verify.scene.load import load_scene, type_at
     from verify.studies.base import STUDIES, studies_of
 
-    known = STUDIES.named(name).__struct_fields__
+    known = STUDIES.named(study).__struct_fields__
     for key, _, text in (option.partition("=") for option in options):
         home = next((f"{one}.{key}" for one in ("beam", "drive", "slider") if type_at(f"{one}.{key}") is not None), "")
         if home and key not in known:
-            raise InputError(f"{name}.{key} is not a known key: give --set {home}={text}")
-    loaded = load_scene(scene, (*overrides, *(f"{name}.{option}" for option in options)))
-    study = dict(studies_of(loaded)).get(name) or convert({}, STUDIES[name], name)
-    study.check(loaded)
-    with shared.progress(study.steps or None, quiet=any(formats.values()), lines=study.steps > 0) as step:
-        result = study.run(loaded, SolutionCache(loaded.beam), step)
+            raise InputError(f"{study}.{key} is not a known key: give --set {home}={text}")
+    loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)))
+    chosen = dict(studies_of(loaded)).get(study) or convert({}, STUDIES[study], study)
+    chosen.check(loaded)
+    with shared.progress(chosen.steps or None, quiet=any(formats.values()), lines=chosen.steps > 0) as step:
+        result = chosen.run(loaded, SolutionCache(loaded.beam), step)
     shared.show(result, **formats)
     shared.save_charts(result, charts)

@@ -72,11 +72,11 @@ def environment() -> dict[str, str]:
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
-    from verify import __version__
+    from verify.parallel import versions
 
-    values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), "verify": __version__}
-    values |= {"Python": platform.python_version(), "system": f"{platform.system()} {platform.machine()}"}
-    for name in ("numpy", "scipy", "numba", "scikit-fem", "matplotlib", "exudyn", "mujoco"):
+    values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), **versions()}
+    values["system"] = f"{platform.system()} {platform.machine()}"
+    for name in ("matplotlib", "exudyn", "mujoco"):
         with suppress(PackageNotFoundError):  # the engines are optional
             values[name] = version(name)
     return values

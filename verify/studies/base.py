@@ -41,7 +41,19 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         raise NotImplementedError
 
 
-OWN = ("spectrum", "convergence", "wave", "motion", "motor", "control", "identify", "claims", "sweep")
+OWN = (
+    "spectrum",
+    "convergence",
+    "wave",
+    "motion",
+    "motor",
+    "control",
+    "identify",
+    "claims",
+    "sweep",
+    "optimise",
+    "sensitivity",
+)
 STUDIES: Registry[type[Study]] = Registry(
     "study",
     "verify.studies",

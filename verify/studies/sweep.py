@@ -1,23 +1,33 @@
-"""Quantities over the Cartesian product of scene keys and quantity arguments, on all cores."""
+"""Quantities over the Cartesian product of scene keys and quantity arguments, on all cores or on a cluster.
 
+A sweep may write its rows to a file of JSON lines as they complete, from which the same sweep continues after a kill.
+The first line has the versions, a hash of the scene, and the sweep; each further one has a combination, its values, and
+what `Sweep.run` needs beside them. When all are there the file is sorted: then it is the same, byte for byte, whatever
+computed it.
+"""
+
+import json
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from hashlib import sha256
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
 import msgspec
 from msgspec import Meta
 
 from verify.analysis.margins import beam_margins, run_margins, sag_margins
-from verify.analysis.solution_cache import Settings, SolutionCache
+from verify.analysis.solution_cache import Bracket, Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
+from verify.files import appending, exists, write_whole
 from verify.linear.registry import EXACT, MODELS
-from verify.parallel import VARIABLE, map_processes
-from verify.quantities.base import QUANTITIES, as_text, evaluate
+from verify.parallel import completed, versions, workers
+from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.load import scene_from
 from verify.studies.base import Progress, Study
@@ -28,7 +38,9 @@ if TYPE_CHECKING:
 
     from verify.scene.model import Scene
 
+Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
 MOST = 100_000
+UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
 AGREE = "claims that agree"
 UNEVEN = 2.0, 25.0
 """Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
@@ -58,33 +70,41 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
         _combinations(self.over)
         wanted = _quantities(self.quantities)
-        tables, known = _tables(scene), {name for one in wanted for name in one.schema.__struct_fields__}
+        tables, known = plain_tables(scene), {name for one in wanted for name in one.schema.__struct_fields__}
         for name in [*self.arguments, *(key.strip() for keys in self.over for key in keys.split(","))]:
             if "." in name:
-                _put(tables, name.split("."), name, None)
+                _put(tables, name.split("."), f"sweep.over.{name}", None)
             elif name not in known:
                 remedy = near_name(name, tuple(known))
                 raise InputError(f"sweep: {name} is no argument of {', '.join(self.quantities)}: {remedy}")
         if self.claims and not scene.claim:
             raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress, file: Path | None = None) -> "Result":
         """Evaluate the quantities over every combination of the lists in `over`, the first key slowest.
 
-        Runs on as many processes as VERIFY_JOBS says, else as there are cores. Returns one table with a row for each
+        Runs on as many processes as VERIFY_JOBS says, else as there are cores, or on the workers of `parallel.cluster`.
+        Rows are appended to `file`; those that it already has are not computed. Returns one table with a row for each
         combination, and a chart of each quantity over one or two lists. Raises InputError for an unknown quantity, key
-        or argument; a combination that raises it is a row with the reason.
+        or argument, and for a file of another sweep; a combination that raises it is a row with the reason.
         """
         self.check(scene)
-        tables = _tables(scene)
-        combinations = _combinations(self.over)
-        values = map_processes(
-            _evaluate,
-            [(tables, self, one) for one in combinations],
-            lambda i: progress(f"combination {i + 1} of {len(combinations)}"),
-            max_workers=None if os.environ.get(VARIABLE) else os.cpu_count(),
-        )
-        rows = [one | found for one, found in zip(combinations, values, strict=True)]
+        tables, combinations = plain_tables(scene), _combinations(self.over)
+        header = _header(self, tables) if file else b""
+        lines = _lines(file, header) if file else {}
+        todo = [i for i in range(len(combinations)) if i not in lines]
+        tasks = [(tables, self, combinations[i], i) for i in todo]
+        with (
+            appending(file or Path(os.devnull), "--to") as append,
+            workers(len(todo) - 1, unset=os.cpu_count()) as executor,
+        ):
+            for i, line in completed(_evaluate, tasks, executor, first_here=True):
+                append(line)
+                lines[todo[i]] = line
+                progress(f"combination {len(lines)} of {len(combinations)}")
+        if file:
+            write_whole(file, b"".join((header, *(lines[i] for i in sorted(lines)))).decode(), "--to")
+        rows = [_row(lines[i]) for i in range(len(combinations))]
         margins = [margin for row in rows for margin in row.pop("margins")]
         if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
             margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
@@ -107,25 +127,62 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
 
-def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any]]) -> dict[str, Any]:
-    """Values by quantity, claims that agree, reason for a missing value, worst margin, of one combination."""
-    tables, study, combination = task
-    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": ()}
+def _evaluate(task: tuple[dict[str, Any], Sweep, dict[str, Any], int]) -> bytes:
+    """The line of one combination: values by quantity, claims that agree, reason for a missing value, margins."""
+    tables, study, combination, number = task
+    row: dict[str, Any] = dict.fromkeys(study.quantities) | {AGREE: 0, "reason": None, "margins": []}
     try:
-        for key, value in combination.items():
-            tables = _put(tables, key.split("."), key, value) if "." in key else tables
-        scene = scene_from(tables)
-        cache = SolutionCache(scene.beam)
-        arguments = study.arguments | {key: value for key, value in combination.items() if "." not in key}
-        for one in _quantities(study.quantities):
-            own = {k: v for k, v in arguments.items() if k in one.schema.__struct_fields__}
-            row[one.name] = evaluate(one.name, own, scene, cache)
-            row["margins"] += (*quantity_margins(one.name, own, scene, cache),)
+        requests = [
+            (one.name, {key: value for key, value in study.arguments.items() if key in one.types})
+            for one in _quantities(study.quantities)
+        ]
+        scene, cache, requests = varied(tables, requests, combination)
+        for name, arguments in requests:
+            row[name] = as_plain(evaluate(name, arguments, scene, cache))
+            row["margins"] += map(msgspec.to_builtins, quantity_margins(name, arguments, scene, cache))
         for claim in scene.claim if study.claims else ():
             row[AGREE] += claim.agrees(computed(claim, scene, cache))
     except InputError as error:
         row["reason"] = str(error)
-    return row
+    return json.dumps({"row": number, "combination": combination, **row}).encode() + b"\n"
+
+
+def _row(line: bytes) -> dict[str, Any]:
+    """The combination and the values of a line, with its margins."""
+    row = json.loads(line)
+    for name, value in row.items():
+        if isinstance(value, dict) and {"re", "im"} == set(value):
+            row[name] = complex(value["re"], value["im"])
+        elif isinstance(value, dict) and {"lower", "upper"} == set(value):
+            row[name] = Bracket(**value)
+    row["margins"] = [msgspec.convert(one, Margin) for one in row["margins"]]
+    del row["row"]
+    return {**row.pop("combination"), **row}
+
+
+def _header(study: Sweep, tables: Mapping[str, Any]) -> bytes:
+    """The first line of a sweep's file."""
+    digest = sha256(json.dumps({**tables, "title": "", "description": ""}, sort_keys=True).encode()).hexdigest()
+    provenance = {"versions": versions(), "scene": tables["name"], "sha256 of the scene": digest}
+    return json.dumps(provenance | {"sweep": msgspec.to_builtins(study)}).encode() + b"\n"
+
+
+def _lines(file: Path, header: bytes) -> dict[int, bytes]:
+    """Lines by number of the combinations that a file has; a new file gets its header. Raises InputError."""
+    text = file.read_bytes() if exists(file, "--to") and file.is_file() else b""
+    first, *lines = text.splitlines(keepends=True) or [header]
+    lines = [line for line in lines if line.endswith(b"\n")]  # a kill may leave half of one
+    try:
+        own, other = json.loads(header), json.loads(first)
+        differing = [name for name in own if own[name] != other[name]]
+        found = {json.loads(line)["row"]: line for line in lines}
+    except (ValueError, KeyError, TypeError):
+        differing, found = ["contents"], {}
+    if differing:
+        what = f"has the rows of another sweep (other {', '.join(differing)}): name another file, or delete it"
+        raise InputError(f"--to {shown(str(file))} {what}")
+    write_whole(file, b"".join((header, *lines)).decode(), "--to")
+    return found
 
 
 def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
@@ -192,23 +249,57 @@ def _combinations(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     return [{key: value for part in parts for key, value in part.items()} for parts in product(*axes)]
 
 
-def _tables(scene: "Scene") -> dict[str, Any]:
-    """The scene as in a file, without gates and without the sweep, which would check itself."""
+def plain_tables(scene: "Scene") -> dict[str, Any]:
+    """The scene as in a file, without gates, and without studies that no quantity reads or that call this."""
     tables = {name: msgspec.to_builtins(getattr(scene, name)) for name in scene.__struct_fields__ if name != "gate"}
     studies = tables.pop("studies")
-    return tables | {name: study for name, study in studies.items() if name != "sweep"}
+    return tables | {name: study for name, study in studies.items() if name not in UNREAD}
 
 
-def _put(node: Any, path: list[str], key: str, value: Any) -> Any:
+def varied(
+    tables: dict[str, Any], requests: Sequence[Request], values: Mapping[str, Any]
+) -> "tuple[Scene, SolutionCache, list[Request]]":
+    """The scene, its cache and the quantities (name, arguments) with other values by key; keys may be joined by commas.
+
+    A key with a dot is one of the scene, one without an argument of the quantities that have it. Raises InputError.
+    """
+    own, known = {key: value for key, value in values.items() if "." not in key}, dict[str, None]()
+    for joined in values.keys() - own:
+        for key in joined.split(","):
+            tables = _put(tables, key.strip().split("."), joined, values[joined])
+    found = []
+    for name, arguments in requests:
+        types = QUANTITIES.named(name).types
+        known |= dict.fromkeys(types)
+        found.append((name, arguments | {key: value for key, value in own.items() if key in types}))
+        QUANTITIES[name].bind(found[-1][1])
+    if unknown := next((key for key in own if key not in known), None):
+        raise InputError(f"{unknown} is no argument of the quantities: {near_name(unknown, tuple(known))}")
+    scene = scene_from(tables)
+    return scene, SolutionCache(scene.beam), found
+
+
+def value_at(tables: dict[str, Any], key: str, requests: Sequence[Request]) -> Any:
+    """The value of a scene's key, of the first of several, or of an argument; None where it has none."""
+    if "." not in key:
+        return next((arguments[key] for _, arguments in requests if key in arguments), None)
+    here: Any = tables
+    for step in key.partition(",")[0].strip().split("."):
+        _put(here, [step], key, None)  # which refuses an unknown one
+        here = here[0 if step == "*" else int(step)] if isinstance(here, list | tuple) else here[step]
+    return here
+
+
+def _put(node: Any, path: list[str], field: str, value: Any) -> Any:
     """A copy of plain tables with another value at a path. Raises InputError for a path that does not exist."""
     head, *rest = path
     names = dict(enumerate(node)) if isinstance(node, list | tuple) else node if isinstance(node, dict) else {}
     known = {str(name): one for name, one in names.items()}
     if head not in known and not (head == "*" and isinstance(node, list | tuple) and node):
-        raise InputError(f"sweep.over.{key}: {head} is not known: {near_name(head, tuple(known))}")
+        raise InputError(f"{field}: {head} is not known: {near_name(head, tuple(known))}")
     for name, one in known.items():
         if head in ("*", name):
-            known[name] = _put(one, rest, key, value) if rest else value
+            known[name] = _put(one, rest, field, value) if rest else value
     return list(known.values()) if isinstance(node, list | tuple) else known
 
 
