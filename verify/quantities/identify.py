@@ -3,6 +3,8 @@
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from msgspec import Meta
+from msgspec.json import encode
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.quantities.base import TABLES, Scene, quantity
@@ -13,37 +15,69 @@ if TYPE_CHECKING:
 READS = (*TABLES, "identify")
 Name = Annotated[str, Meta(description="fitted parameter of [identify]")]
 Side = Annotated[
-    Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd"],
-    Meta(description="half the width or an end of the interval, the estimate, or its standard deviation"),
+    Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd", "cramer-rao"],
+    Meta(
+        description="half the width or an end of the interval, a bound for no end of a profile, the estimate, its "
+        "standard deviation, or that of unbiased fits at the true values"
+    ),
 ]
+Until = Annotated[float, Meta(gt=0, description="end of the synthetic data, in the unit of their span")]
 
 
-def _study(scene: Scene, parameter: str) -> Any:
-    """The section [identify]. Raises InputError where the scene or the section lacks the parameter."""
+def _study(scene: Scene, parameter: str, until: float | None = None) -> Any:
+    """The section [identify], its data up to `until`. Raises InputError where it or the scene lacks the parameter."""
     study = scene.studies.get("identify")
     if study is None or parameter not in study.parameters:
         known = "add [identify] to the scene" if study is None else f"give one of {', '.join(study.parameters)}"
         raise InputError(f"parameter = {parameter!r} is not fitted: {known}")
-    return study
+    if until is None:
+        return study
+    own = _synthetic(study, "a shorter record")
+    (first, last), steps = own.span, own.points - 1
+    left = int((until - first) / (last - first) * steps * (1.0 + 1e-12))  # intervals between the points that remain
+    if not 1 <= left <= steps:
+        raise InputError(f"until = {until!r} is not within identify.synthetic.span: give up to {last:g}")
+    end = first + (last - first) * left / steps
+    return replace(study, synthetic=replace(own, span=(first, end), points=left + 1))
+
+
+def _synthetic(study: Any, subject: str) -> Any:
+    """The synthetic data. Raises InputError without them."""
+    if study.synthetic is None:
+        raise InputError(f"identify.synthetic is missing: {subject} needs true values and a noise, add it")
+    return study.synthetic
 
 
 @quantity("identify.interval", unit="SI", reads=READS)
-def interval(scene: Scene, cache: "SolutionCache", *, parameter: Name, side: Side = "half-width") -> float:
+def interval(
+    scene: Scene, cache: "SolutionCache", *, parameter: Name, side: Side = "half-width", until: Until | None = None
+) -> float:
     """95 % interval, estimate or standard deviation of a parameter identified from data, in its SI unit."""
-    one = _study(scene, parameter).fitted(scene, cache)[2].estimates[parameter]
+    from verify.identify import fit
+
+    study = _study(scene, parameter, until)
+    if side == "cramer-rao":
+        own, model = _synthetic(study, "the bound of Cramér and Rao"), study.data(scene)[0]
+        exact, settings = model.predict(model.values(own.true))[0], {"start": own.true, "noise": own.noise}
+        return fit.fit(model, exact, study.parameters, **settings, profiles=False).estimates[parameter].sd
+    model, _, found = study.fitted(scene, cache)
+    one = found.estimates[parameter]
     if one.reason and side not in ("value", "sd", "profile-lower", "profile-upper"):
         raise InputError(f"parameter = {parameter!r} is not identifiable: {one.reason}")
-    (lower, upper), ends = one.interval, one.profile or (None, None)
-    figures = {"half-width": 0.5 * (upper - lower), "lower": lower, "upper": upper, "value": one.value, "sd": one.sd}
-    figure = (figures | {"profile-lower": ends[0], "profile-upper": ends[1]})[side]
-    if figure is None:
+    if one.profile is None and side in ("profile-lower", "profile-upper"):
         raise InputError(f"side = {side!r}: {one.reason or 'no profile is computed, give [identify] profiles = true'}")
-    return float(figure)
+    (lower, upper), (left, right), known = one.interval, one.profile or (None, None), model.known[parameter]
+    figures = {"half-width": 0.5 * (upper - lower), "lower": lower, "upper": upper, "value": one.value, "sd": one.sd}
+    figures["profile-lower"], figures["profile-upper"] = (
+        edge if end is None else end for end, edge in ((left, known.lower), (right, known.upper))
+    )
+    return float(figures[side])
 
 
 @quantity("identify.coverage", unit="1", reads=READS)
 def coverage(
     scene: Scene,
+    cache: "SolutionCache",
     *,
     parameter: Name,
     repeats: Annotated[int, Meta(ge=100, le=100_000, description="number of fits")] = 2000,
@@ -52,7 +86,9 @@ def coverage(
     from verify.identify import fit
 
     study = _study(scene, parameter)
-    if (own := study.synthetic) is None:
-        raise InputError("identify.synthetic is missing: coverage needs true values and a noise, add it")
-    model = study.data(scene)[0]
-    return fit.coverage(model, study.parameters, own.true, own.noise, repeats=repeats, seed=own.seed)[parameter]
+    own, model = _synthetic(study, "coverage"), study.data(scene)[0]
+    key: Any = ("coverage", encode(study), scene.beam, scene.slider, scene.drive, repeats)  # of all its parameters
+    if key not in cache.motors:
+        settings = {"repeats": repeats, "seed": own.seed}
+        cache.motors[key] = fit.coverage(model, study.parameters, own.true, own.noise, **settings)
+    return float(cache.motors[key][parameter])
