@@ -41,7 +41,7 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         loop, responses = self.loop(scene, cache), dict[str, Any]()
         for plant in list(COLOURS)[: list(COLOURS).index(self.plant) + 1]:
             progress(f"response of the {plant} plant")
-            responses[plant] = self.response(loop, plant)
+            responses[plant] = self.response(scene, cache, plant)
         last, hertz = responses[self.plant], scene.drive.frequency_hz if scene.drive else 0.0
         assert scene.slider is not None
         steady = loop.plants["full"].start(self.target if self.of == "speed" else 0.0, float(last.command[-1]))
