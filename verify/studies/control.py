@@ -67,7 +67,7 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         own = loop.controller
         row = [own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
         what = (self.of, "m" if self.of == "position" else "m/s")
-        command = ("phase", "degrees") if self.output == "phase" else ("amplitude", "1")
+        command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
         ends = last.times[[0, -1]]
         lines = [("target", ends, 0.0 * ends + self.target, LIMIT)]
         steps = [("", ends, 0.0 * ends + one, LIMIT) for one in (own.lower, own.upper)]
