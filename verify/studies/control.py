@@ -15,8 +15,8 @@ COLOURS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
 LIMIT = {"color": "#7d8590", "linestyle": "--", "linewidth": 1.0}
 NOTE = (
     "Linear and averaged plant: the wave follows the command with the time constant 2Q/omega of one resonance. Full: "
-    "between resonances it follows sooner and beats at the detuning of the modes; speed over the last drive period. "
-    "Settling: to 2 % of the step. Saturated: fraction of ticks with the command at a limit."
+    "between resonances it beats at the detuning of the modes, and feet take their time to follow it; speed over the "
+    "last drive period. Settling: to 2 % of the step. Saturated: fraction of ticks with the command at a limit."
 )
 
 
