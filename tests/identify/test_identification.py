@@ -200,6 +200,9 @@ def changed(**values):
     return scene_from(TABLES | {"identify": TABLES["identify"] | values})
 
 
+SHORT = {"noise": 1e-3, "span": [0.0, 0.02], "points": 101, "seed": 7}
+
+
 def test_the_study_states_the_intervals():
     scene = scene_from(TABLES)
     result, cache = run(scene), SolutionCache(scene.beam)
@@ -216,12 +219,22 @@ def test_the_study_states_the_intervals():
 
 
 def test_a_short_record_is_not_trusted():
-    scene = changed(synthetic={"noise": 1e-3, "span": [0.0, 0.02], "points": 100, "seed": 7})
+    scene = changed(synthetic=SHORT)
     result = run(scene)
     assert result.verdict.headline.startswith("Not to be trusted: slope is not identifiable")
     assert "slope" not in result.summary
     with pytest.raises(InputError, match="'slope' is not identifiable: its profile has no upper end"):
         evaluate("identify.interval", {"parameter": "slope"}, scene, SolutionCache(scene.beam))
+    cut, arguments = (
+        changed(synthetic={"noise": 1e-3, "span": [0.0, 0.0398], "points": 200, "seed": 7}),
+        {"until": 0.02},
+    )
+    for side in ("value", "profile-lower", "cramer-rao"):  # the same points, the same noise
+        own = {"parameter": "slope", "side": side}
+        short = evaluate("identify.interval", own, changed(synthetic=SHORT), SolutionCache(scene.beam))
+        assert evaluate("identify.interval", own | arguments, cut, SolutionCache(cut.beam)) == pytest.approx(short)
+    with pytest.raises(InputError, match="until = 0"):
+        evaluate("identify.interval", own | {"until": 0.05}, cut, SolutionCache(cut.beam))
 
 
 def test_a_file_is_beside_its_scene(tmp_path):

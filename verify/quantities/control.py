@@ -145,7 +145,11 @@ def steady_command(scene: Scene, cache: "SolutionCache", control: ControlOptions
 
 @quantity("control.time_constant", unit="s")
 def time_constant(
-    scene: Scene, cache: "SolutionCache", control: ControlOptions, *, part: Literal["motor", "envelope"] = "motor"
+    scene: Scene,
+    cache: "SolutionCache",
+    control: ControlOptions,
+    *,
+    part: Annotated[Literal["motor", "envelope"], Meta(description="speed of the slider, or amplitude of the wave")],
 ) -> float:
     """Time constant of the motor's speed at the target, or of the envelope of the wave."""
     return control.loop(scene, cache).times[("motor", "envelope").index(part)]
