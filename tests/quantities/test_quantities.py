@@ -107,8 +107,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"motor.{n}": ("motor", {**HELD, "periods": 400}) for n in ("free_speed", "start_time")},
     "motor.contact_imbalance": ("motor", {**HELD, "periods": 60}),
     **{f"control.{n}": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7, "duration": 0.9}) for n in (
-        "overshoot", "settling_time", "steady_error", "steady_command")},
-    "control.time_constant": ("driven", {**FEM, "target": 6e-7, "part": "motor"}),
+        "overshoot", "settling_time")},
     "study.value": ("decay", {"study": "identify", "row": "mu", "column": "sd"}),
     "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
     "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),

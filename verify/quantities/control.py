@@ -129,27 +129,3 @@ def settling_time(scene: Scene, cache: "SolutionCache", control: ControlOptions)
     if seconds is None:
         raise InputError("duration: the response does not settle, give a longer one, or smaller gains")
     return seconds
-
-
-@quantity("control.steady_error", unit="1")
-def steady_error(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
-    """Mean error of the controlled slider over the last tenth of the response, over the step of the target."""
-    return control.response(scene, cache).steady_error
-
-
-@quantity("control.steady_command", unit="1")
-def steady_command(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
-    """Command at the end of the response to a step of the target; of output = phase in degrees."""
-    return float(control.response(scene, cache).command[-1])
-
-
-@quantity("control.time_constant", unit="s")
-def time_constant(
-    scene: Scene,
-    cache: "SolutionCache",
-    control: ControlOptions,
-    *,
-    part: Annotated[Literal["motor", "envelope"], Meta(description="speed of the slider, or amplitude of the wave")],
-) -> float:
-    """Time constant of the motor's speed at the target, or of the envelope of the wave."""
-    return control.loop(scene, cache).times[("motor", "envelope").index(part)]

@@ -60,12 +60,14 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
             percent("overshoot", ".4g"): lambda row: row[1].overshoot,
             si("settling time", "s"): lambda row: row[1].settling_time,
             percent("steady error", "+.3g"): lambda row: row[1].steady_error,
+            Column("steady command", format=".4g"): lambda row: float(row[1].command[-1]),
             percent("saturated", ".3g"): lambda row: row[1].saturated,
         }
-        gains = [Column("K_p"), Column("K_i", "1/s"), si("sample time", "s"), si("motor time constant", "s")]
-        gains += [si("envelope time constant", "s"), percent("overshoot in closed form", ".6g")]
+        gains = [Column("law"), Column("K_p"), Column("K_i", "1/s"), si("sample time", "s")]
+        gains += [si("motor time constant", "s"), si("envelope time constant", "s")]
+        gains += [percent("overshoot in closed form", ".6g")]
         own = loop.controller
-        row = [own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
+        row = ["PI", own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
         what = (self.of, "m" if self.of == "position" else "m/s")
         command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
         ends = last.times[[0, -1]]
