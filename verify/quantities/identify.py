@@ -16,36 +16,20 @@ READS = (*TABLES, "identify")
 Name = Annotated[str, Meta(description="fitted parameter of [identify]")]
 Side = Annotated[
     Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd", "cramer-rao"],
-    Meta(
-        description="half the width or an end of the interval, a bound for no end of a profile, the estimate, its "
-        "standard deviation, or that of unbiased fits at the true values"
-    ),
+    Meta(description="of the interval or the profile (its bound for no end), the estimate or its deviation"),
 ]
 Until = Annotated[float, Meta(gt=0, description="end of the synthetic data, in the unit of their span")]
 
 
-def _study(scene: Scene, parameter: str, until: float | None = None) -> Any:
-    """The section [identify], its data up to `until`. Raises InputError where it or the scene lacks the parameter."""
+def _study(scene: Scene, parameter: str, *, synthetic: bool = False) -> Any:
+    """The section [identify]. Raises InputError where it or the scene lacks the parameter, or synthetic data."""
     study = scene.studies.get("identify")
     if study is None or parameter not in study.parameters:
         known = "add [identify] to the scene" if study is None else f"give one of {', '.join(study.parameters)}"
         raise InputError(f"parameter = {parameter!r} is not fitted: {known}")
-    if until is None:
-        return study
-    own = _synthetic(study, "a shorter record")
-    (first, last), steps = own.span, own.points - 1
-    left = int((until - first) / (last - first) * steps * (1.0 + 1e-12))  # intervals between the points that remain
-    if not 1 <= left <= steps:
-        raise InputError(f"until = {until!r} is not within identify.synthetic.span: give up to {last:g}")
-    end = first + (last - first) * left / steps
-    return replace(study, synthetic=replace(own, span=(first, end), points=left + 1))
-
-
-def _synthetic(study: Any, subject: str) -> Any:
-    """The synthetic data. Raises InputError without them."""
-    if study.synthetic is None:
-        raise InputError(f"identify.synthetic is missing: {subject} needs true values and a noise, add it")
-    return study.synthetic
+    if synthetic and study.synthetic is None:
+        raise InputError("identify.synthetic is missing: this figure needs true values and a noise, add it")
+    return study
 
 
 @quantity("identify.interval", unit="SI", reads=READS)
@@ -55,22 +39,28 @@ def interval(
     """95 % interval, estimate or standard deviation of a parameter identified from data, in its SI unit."""
     from verify.identify import fit
 
-    study = _study(scene, parameter, until)
+    study = _study(scene, parameter, synthetic=until is not None or side == "cramer-rao")
+    if until is not None:
+        (first, last), steps = study.synthetic.span, study.synthetic.points - 1
+        remaining = int((until - first) / (last - first) * steps * (1.0 + 1e-12))  # intervals between the points
+        if not 1 <= remaining <= steps:
+            raise InputError(f"until = {until!r} is not within identify.synthetic.span: give up to {last:g}")
+        span = first, first + (last - first) * remaining / steps
+        study = replace(study, synthetic=replace(study.synthetic, span=span, points=remaining + 1))
     if side == "cramer-rao":
-        own, model = _synthetic(study, "the bound of Cramér and Rao"), study.data(scene)[0]
+        own, model = study.synthetic, study.data(scene)[0]
         exact, settings = model.predict(model.values(own.true))[0], {"start": own.true, "noise": own.noise}
         return fit.fit(model, exact, study.parameters, **settings, profiles=False).estimates[parameter].sd
     model, _, found = study.fitted(scene, cache)
-    one = found.estimates[parameter]
+    one, known = found.estimates[parameter], model.known[parameter]
     if one.reason and side not in ("value", "sd", "profile-lower", "profile-upper"):
         raise InputError(f"parameter = {parameter!r} is not identifiable: {one.reason}")
-    if one.profile is None and side in ("profile-lower", "profile-upper"):
+    if one.profile is None and side.startswith("profile"):
         raise InputError(f"side = {side!r}: {one.reason or 'no profile is computed, give [identify] profiles = true'}")
-    (lower, upper), (left, right), known = one.interval, one.profile or (None, None), model.known[parameter]
+    (lower, upper), (left, right) = one.interval, one.profile or (None, None)
     figures = {"half-width": 0.5 * (upper - lower), "lower": lower, "upper": upper, "value": one.value, "sd": one.sd}
-    figures["profile-lower"], figures["profile-upper"] = (
-        edge if end is None else end for end, edge in ((left, known.lower), (right, known.upper))
-    )
+    figures["profile-lower"] = known.lower if left is None else left
+    figures["profile-upper"] = known.upper if right is None else right
     return float(figures[side])
 
 
@@ -85,8 +75,8 @@ def coverage(
     """Fraction of fits to synthetic data whose 95 % interval by Fisher information contains the true value."""
     from verify.identify import fit
 
-    study = _study(scene, parameter)
-    own, model = _synthetic(study, "coverage"), study.data(scene)[0]
+    study = _study(scene, parameter, synthetic=True)
+    own, model = study.synthetic, study.data(scene)[0]
     key: Any = ("coverage", encode(study), scene.beam, scene.slider, scene.drive, repeats)  # of all its parameters
     if key not in cache.motors:
         settings = {"repeats": repeats, "seed": own.seed}

@@ -42,9 +42,9 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 OWN = (
-    *("spectrum", "convergence", "wave", "motion", "motor", "control", "identify"),
-    *("claims", "sweep", "optimise", "sensitivity"),
-)
+    "spectrum", "convergence", "wave", "motion", "motor", "control", "identify", "claims", "sweep", "optimise",
+    "sensitivity",
+)  # fmt: skip
 STUDIES: Registry[type[Study]] = Registry(
     "study",
     "verify.studies",
