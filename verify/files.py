@@ -3,7 +3,7 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -46,20 +46,6 @@ def write_whole(path: Path, text: str, field: str = "file") -> None:
     """Write a text file through a temporary neighbour and a rename, so that no reader sees half of it."""
     with whole(path, field) as part:
         part.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
-
-
-@contextmanager
-def appending(path: Path, field: str) -> Iterator[Callable[[bytes], None]]:
-    """A function that appends whole lines, unbuffered: an interrupt comes before or after one. Raises InputError."""
-    with _written(path, field):
-        out = open(path, "ab", buffering=0)  # noqa: SIM115
-
-    def append(lines: bytes) -> None:
-        with _written(path, field):
-            out.write(lines)
-
-    with out:
-        yield append
 
 
 @contextmanager

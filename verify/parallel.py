@@ -47,7 +47,9 @@ def cluster(where: str | int) -> Iterator[None]:
                         starting.callback(
                             signal, SIGINT, signal(SIGINT, SIG_IGN)
                         )  # workers leave Ctrl-C to this process
-                    address = LocalCluster(where, threads_per_worker=1, dashboard_address=":0", silence_logs=50)
+                    address = LocalCluster(
+                        n_workers=where, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+                    )
                 stack.enter_context(address)
             client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
             client.wait_for_workers(1, timeout=PATIENCE)

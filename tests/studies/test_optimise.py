@@ -44,10 +44,7 @@ def test_the_matched_absorber_is_the_conjugate_impedance():
     )
     result = optimum(scene, "wave.reflection", variables, method="local")
     assert list(result.data["optimum"].values()) == pytest.approx([DASHPOT, SPRING], rel=1e-7)
-    table = rows(result.tables[1])["wave.reflection"]
-    assert table["start"] > 0.5
-    assert table["finer optimum"] < 1e-8
-    assert table["finer model"] == "the same"
+    assert rows(result.tables[1])["wave.reflection"]["finer optimum"] < 1e-8
 
 
 def test_the_optimum_of_segments_is_corrected_on_the_exact_beam(renders):
@@ -175,5 +172,5 @@ def test_what_has_no_shares_is_refused(change, word):
     study = Sensitivity(**({"quantity": "mode.frequency", "arguments": FUNDAMENTAL, "input": inputs, "n": 16} | change))
     with pytest.raises(InputError, match=word):
         study.run(PAPER, SolutionCache(PAPER.beam), lambda step: None)
-    with pytest.raises(InputError, match="give low and high for uniform"):
+    with pytest.raises(InputError, match="give low below high for uniform"):
         Input(key="beam.length", distribution="uniform", sd=0.1)

@@ -186,10 +186,10 @@ def test_rows_of_another_sweep_are_refused(tmp_path, fragile):
         fragile_sweep(file, 3)
     with pytest.raises(InputError, match=r"other .*sha256 of the scene"):
         Sweep(quantities=("mode.fragile",), over={"mode": [1, 2]}).run(load_scene("paper-wave"), None, print, file)
-    file.write_text("a file of somebody\n")
+    file.write_text("of somebody\n")
     with pytest.raises(InputError, match="other contents"):
         fragile_sweep(file, 2)
-    assert file.read_text() == "a file of somebody\n"
+    assert file.read_text() == "of somebody\n"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")

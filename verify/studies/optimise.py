@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
+from itertools import accumulate
 from math import inf, isfinite, log
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
@@ -45,6 +46,8 @@ NOTES = [
     "A bound or a limit is active within 0.1 % of the range or of the limit.",
     "finer: the exact beam where the quantity has it, else twice the count; twice the time steps.",
 ]
+VARIABLES = ("variable", "low", "high", "start", "optimum", "finer optimum", "bound")
+FIGURES = ("quantity", "limit", "active", "unit", "start", "optimum", "there, finer", "finer optimum", "finer model")
 HISTORY = "Points that satisfy the limits, in the order of their evaluation, and the best of them so far."
 
 
@@ -157,17 +160,24 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             bound = "low" if at[-1] < ACTIVE else "high" if at[-1] > 1.0 - ACTIVE else ""
             rows.append((one.key, one.low, one.high, *map(one.value, at), bound))
         for i, (name, _) in enumerate(requests):
-            role, unit, active = f"{self.goal}d", QUANTITIES[name].unit, None
+            role, unit, active = self.limit[i - 1].limits if i else f"{self.goal}d", QUANTITIES[name].unit, None
             if i and (size := last[i]) is not None:
-                role, active = self.limit[i - 1].limits, min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
+                active = min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
             head = name, role, active, "" if unit == "1" else unit
-            sizes.append((*head, start[i], optimum[i], there[i], last[i], labels[i] or "the same"))
-        names = ("low", "high", "start", "optimum", "finer optimum")
-        columns = [Column("variable"), *(Column(name, format=".9g") for name in names), Column("bound")]
-        heads = [Column(name) for name in ("quantity", "limit", "active", "unit")]
-        heads += [Column(name, format=".6g") for name in ("start", "optimum", "there, finer", "finer optimum")]
-        heads += [Column("finer model")]
-        shown = [Table("Variables", columns, rows, NOTES), Table("Objective and limits", heads, sizes)]
+            sizes.append(
+                (
+                    *head,
+                    start[i],
+                    optimum[i],
+                    there[i],
+                    last[i],
+                    labels[i] if labels[i] and finer is not coarse else "the same",
+                )
+            )
+        shown = [
+            Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES),
+            Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], sizes),
+        ]
         data = {"optimum": values, "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
         notes = list(dict.fromkeys(coarse.notes + finer.notes))
         if not finer.feasible or last[0] is None:
@@ -295,12 +305,10 @@ class Search:
 
     def draw(self, ax: "Axes") -> None:
         """Feasible points and the best so far."""
-        import numpy as np
-
         numbers, values = zip(*self.history, strict=True)
         ax.plot(numbers, values, ".", alpha=0.5, label="points")
-        best = np.minimum if self.sign > 0.0 else np.maximum
-        ax.step(numbers, best.accumulate(values), where="post", label="best so far")
+        best = accumulate(values, min if self.sign > 0.0 else max)
+        ax.step(numbers, list(best), where="post", label="best so far")
         if min(values) > 0.0 and max(values) > 30.0 * min(values):
             ax.set_yscale("log")
         unit = QUANTITIES[self.study.quantity].unit
@@ -335,14 +343,13 @@ def _finer(
         fields = msgspec.structs.fields(QUANTITIES[name].schema)
         settings = {one.name: one.default for one in fields if not one.required} | arguments
         model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
-        tries: list[tuple[dict[str, Any], str]] = []
-        if model in MODELS and MODELS[model].sized:
-            tries.append(({key: one for key, one in arguments.items() if key != "count"} | {"model": EXACT}, EXACT))
-        if count:
-            tries.append((arguments | {"count": 2 * count}, f"count = {2 * count}"))
+        exact = {key: one for key, one in arguments.items() if key != "count"} | {"model": EXACT}
+        tries = [(exact, EXACT)] if model in MODELS and MODELS[model].sized else []
+        tries += [(arguments | {"count": 2 * count}, f"count = {2 * count}")] if count else []
         if steps:
-            time, label = {"steps_per_period": 2 * steps}, f"{2 * steps} steps a period"
-            tries = [(own | time, f"{text}, {label}") for own, text in tries] + [(arguments | time, label)]
+            label = f"{2 * steps} steps a period"
+            tries = [(own | {"steps_per_period": 2 * steps}, f"{text}, {label}") for own, text in tries]
+            tries.append((arguments | {"steps_per_period": 2 * steps}, label))
         for own, label in tries:
             if figures_at((tables, [(name, own)], values))[0] is not None:
                 found[i], labels[i] = (name, own), label

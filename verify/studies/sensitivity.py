@@ -49,11 +49,10 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     high: Annotated[float, Meta(description="Of uniform, in the key's unit.")] | None = None
 
     def __post_init__(self) -> None:
-        given, bounds = (self.sd is not None, self.low is not None, self.high is not None), (self.low or 0.0, self.high)
-        if given != ((False, True, True) if self.distribution == "uniform" else (True, False, False)):
-            raise InputError(f"sensitivity.input {self.key}: give low and high for uniform, sd alone for the others")
-        if bounds[1] is not None and bounds[0] >= bounds[1]:
-            raise InputError(f"sensitivity.input {self.key}: low = {self.low!r}: give less than high")
+        uniform = self.low is not None and self.high is not None and self.low < self.high and self.sd is None
+        other = self.low is None and self.high is None and self.sd is not None
+        if not (uniform if self.distribution == "uniform" else other):
+            raise InputError(f"sensitivity.input {self.key}: give low below high for uniform, sd alone for the others")
 
     def of(self, value: Any) -> Any:
         """The distribution of `scipy.stats` around the scene's value. Raises InputError."""

@@ -24,7 +24,7 @@ from verify.analysis.solution_cache import Bracket, Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name, shown
-from verify.files import appending, exists, write_whole
+from verify.files import exists, write_whole
 from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, versions, workers
 from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate
@@ -94,12 +94,13 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         lines = _lines(file, header) if file else {}
         todo = [i for i in range(len(combinations)) if i not in lines]
         tasks = [(tables, self, combinations[i], i) for i in todo]
+        # unbuffered: an interrupt comes before or after a whole line
         with (
-            appending(file or Path(os.devnull), "--to") as append,
+            open(file or os.devnull, "ab", buffering=0) as out,
             workers(len(todo) - 1, unset=os.cpu_count()) as executor,
         ):
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
-                append(line)
+                out.write(line)
                 lines[todo[i]] = line
                 progress(f"combination {len(lines)} of {len(combinations)}")
         if file:
