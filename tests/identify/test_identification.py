@@ -18,6 +18,7 @@ from verify.problem.slider import Slider
 from verify.quantities.base import evaluate
 from verify.report.plotting import figure_files
 from verify.scene.load import load_scene, scene_from
+from verify.studies.base import result_of
 from verify.studies.identify import Identify, Synthetic
 
 SLIDER = Slider(mass=0.05, mu=0.2, slope=50.0, speed=0.1)
@@ -216,6 +217,22 @@ def test_the_study_states_the_intervals():
     assert half == pytest.approx(0.5 * (upper - lower), rel=0.01)
     assert 0.9 < evaluate("identify.coverage", {"parameter": "mu", "repeats": 200}, scene, cache) < 0.99
     assert all(figure_files(figure)[1] for figure in result.figures)
+
+
+def test_gates_and_report_share_the_result_of_a_study():
+    scene = scene_from(TABLES)
+    cache = SolutionCache(scene.beam)
+    result = result_of("identify", scene, cache)
+    assert result_of("identify", scene, cache) is result
+    assert result_of("identify", scene_from(TABLES), cache) is not result  # the scenes of a sweep share a cache
+    arguments = {"study": "identify", "row": "slope", "column": "sd"}
+    assert evaluate("study.value", arguments, scene, cache) == result.tables[0].records()[1]["sd"]
+    for wrong, words in (
+        ({"row": "mass"}, "row = 'mass'"),
+        ({"study": "motor"}, "study = 'motor' is not in the scene"),
+    ):
+        with pytest.raises(InputError, match=words):
+            evaluate("study.value", arguments | wrong, scene, cache)
 
 
 def test_a_short_record_is_not_trusted():
