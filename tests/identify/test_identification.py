@@ -18,6 +18,7 @@ from verify.problem.slider import Slider
 from verify.quantities.base import evaluate
 from verify.report.plotting import figure_files
 from verify.scene.load import load_scene, scene_from
+from verify.studies.base import result_of
 from verify.studies.identify import Identify, Synthetic
 
 SLIDER = Slider(mass=0.05, mu=0.2, slope=50.0, speed=0.1)
@@ -210,6 +211,9 @@ def changed(**values):
     return scene_from(TABLES | {"identify": TABLES["identify"] | values})
 
 
+SHORT = {"noise": 1e-3, "span": [0.0, 0.02], "points": 101, "seed": 7}
+
+
 def test_the_study_states_the_intervals():
     scene = scene_from(TABLES)
     result, cache = run(scene), SolutionCache(scene.beam)
@@ -225,13 +229,39 @@ def test_the_study_states_the_intervals():
     assert all(figure_files(figure)[1] for figure in result.figures)
 
 
+def test_gates_and_report_share_the_result_of_a_study():
+    scene = scene_from(TABLES)
+    cache = SolutionCache(scene.beam)
+    result = result_of("identify", scene, cache)
+    assert result_of("identify", scene, cache) is result
+    assert result_of("identify", scene_from(TABLES), cache) is not result  # the scenes of a sweep share a cache
+    arguments = {"study": "identify", "row": "slope", "column": "sd"}
+    assert evaluate("study.value", arguments, scene, cache) == result.tables[0].records()[1]["sd"]
+    for wrong, words in (
+        ({"row": "mass"}, "row = 'mass'"),
+        ({"study": "motor"}, "study = 'motor' is not in the scene"),
+    ):
+        with pytest.raises(InputError, match=words):
+            evaluate("study.value", arguments | wrong, scene, cache)
+
+
 def test_a_short_record_is_not_trusted():
-    scene = changed(synthetic={"noise": 1e-3, "span": [0.0, 0.02], "points": 100, "seed": 7})
+    scene = changed(synthetic=SHORT)
     result = run(scene)
     assert result.verdict.headline.startswith("Not to be trusted: slope is not identifiable")
     assert "slope" not in result.summary
     with pytest.raises(InputError, match="'slope' is not identifiable: its profile has no upper end"):
         evaluate("identify.interval", {"parameter": "slope"}, scene, SolutionCache(scene.beam))
+    cut, arguments = (
+        changed(synthetic={"noise": 1e-3, "span": [0.0, 0.0398], "points": 200, "seed": 7}),
+        {"until": 0.02},
+    )
+    for side in ("value", "profile-lower", "cramer-rao"):  # the same points, the same noise
+        own = {"parameter": "slope", "side": side}
+        short = evaluate("identify.interval", own, changed(synthetic=SHORT), SolutionCache(scene.beam))
+        assert evaluate("identify.interval", own | arguments, cut, SolutionCache(cut.beam)) == pytest.approx(short)
+    with pytest.raises(InputError, match="until = 0"):
+        evaluate("identify.interval", own | {"until": 0.05}, cut, SolutionCache(cut.beam))
 
 
 def test_a_file_is_beside_its_scene(tmp_path):

@@ -109,7 +109,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "motor.efficiency": ("motor", {**HELD, "speed": -3e-4}), "motor.no_load_speed": ("motor", HELD),
     **{f"motor.{n}": ("motor", {**HELD, "periods": 400}) for n in ("free_speed", "start_time")},
     "motor.contact_imbalance": ("motor", {**HELD, "periods": 60}),
-    "control.overshoot": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7}),
+    **{f"control.{n}": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7, "duration": 0.9}) for n in (
+        "overshoot", "settling_time")},
+    "study.value": ("decay", {"study": "identify", "row": "mu", "column": "sd"}),
     "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
     "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
     "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),

@@ -1,7 +1,7 @@
 """Plants as frozen values, whose `advance` maps a state and a command, constant over a tick, to the state after it."""
 
 from collections.abc import Callable
-from math import copysign, pi
+from math import asin, copysign, cos, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,8 +18,8 @@ from verify.problem.beam import PointForce
 
 Force = Callable[[float, float], tuple[float, float, float]]
 """(speed, m/s, constant command) -> (mean force along +x, N, its derivatives by speed and by command)."""
-REACH = 1.5
-"""Largest speed of a force-speed map over the crest speed."""
+STEEPEST = 20.0
+"""Largest derivative of s by the speed over the crest speed in a force-speed map."""
 MOST_PERIODS = 400
 """Drive periods until the mean force of unilateral contact converges."""
 SUBSTEPS = 2
@@ -44,25 +44,27 @@ def mean_force(case: MotorCase, speed: float) -> float:
 def force_map(case: MotorCase, limits: tuple[float, float], output: str, size: tuple[int, int]) -> Force:
     """Bicubic spline of the mean force, from constant commands within limits x prescribed speeds, `size` of each.
 
-    Speeds reach 1.5 times the crest speed; beyond, the force is constant. Raises InputError for zero amplitude.
+    It is a spline in s, speed = crest speed times sin s: at the crest speed the derivative of Coulomb friction by the
+    speed is infinite, by s it is not. Beyond, the force is constant. Raises InputError for zero amplitude.
     """
     from scipy.interpolate import RectBivariateSpline
 
     (lower, upper), scaled = limits, output == "amplitude"
     if not lower < upper or (scaled and lower <= 0.0):
         raise InputError(f"lower = {lower!r}: give it below upper = {upper!r}, and above 0 for an amplitude")
-    top = REACH * crest_speed(case if scaled else commanded(case, 90.0, output))
-    grid, ratios = np.linspace(lower, upper, size[0]), np.linspace(-1.0, 1.0, size[1])
+    top = crest_speed(case if scaled else commanded(case, 90.0, output))
+    grid, angles = np.linspace(lower, upper, size[0]), np.linspace(-0.5, 0.5, size[1]) * pi
     motors = [(commanded(case, command, output), top * (command if scaled else 1.0)) for command in grid.tolist()]
-    table = [[mean_force(motor, v) for v in (fastest * ratios).tolist()] for motor, fastest in motors]
-    spline = RectBivariateSpline(grid, ratios, table, kx=min(3, size[0] - 1), ky=3)
+    table = [[mean_force(motor, v) for v in (fastest * np.sin(angles)).tolist()] for motor, fastest in motors]
+    spline = RectBivariateSpline(grid, angles, table, kx=min(3, size[0] - 1), ky=3)
 
     def force(v: float, y: float) -> tuple[float, float, float]:
         at = min(max(y, lower), upper)
         scale = top * (at if scaled else 1.0)
         ratio = v / scale if abs(v) <= scale else copysign(1.0, v)
-        value, by_command, by_ratio = (float(spline.ev(at, ratio, *order)) for order in ((0, 0), (1, 0), (0, 1)))
-        by_ratio *= abs(v) <= scale
+        angle = asin(ratio)
+        value, by_command, by_ratio = (float(spline.ev(at, angle, *order)) for order in ((0, 0), (1, 0), (0, 1)))
+        by_ratio *= min(1.0 / max(cos(angle), 1e-9), STEEPEST) * (abs(v) <= scale)
         by_command -= by_ratio * ratio / at if scaled else 0.0
         return value, by_ratio / scale, by_command * (y == at)
 

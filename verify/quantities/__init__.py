@@ -11,6 +11,7 @@ from verify.quantities import (  # noqa: F401
     motor,
     shunt,
     slider,
+    study,
     waves,
 )
 from verify.quantities.base import QUANTITIES, describe, evaluate, parse_arguments, quantity

@@ -102,15 +102,30 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
         closed = step_overshoot(gain * plant_gain, slow, fast)
         return Loop(controller, motors, command_at(self.speed), (motor, envelope), closed, error)
 
-    def response(self, loop: Loop, plant: str) -> "Response":
-        """The response of one of the plants. Raises InputError."""
+    def response(self, scene: Scene, cache: "SolutionCache", plant: str = "") -> "Response":
+        """The response of a plant, by default `plant`, computed once. Raises InputError."""
         from verify.control.loop import closed_loop
 
-        duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
-        return closed_loop(loop.controller, loop.plants[plant], self.target, duration, (self.speed, loop.command))
+        own = {name: getattr(self, name) for name in ControlOptions.__struct_fields__} | {"plant": plant or self.plant}
+        key: Any = ("control", *own.values(), scene.slider, scene.drive)
+        if key not in cache.motors:
+            loop = self.loop(scene, cache)
+            duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
+            motor, start = loop.plants[own["plant"]], (self.speed, loop.command)
+            cache.motors[key] = closed_loop(loop.controller, motor, self.target, duration, start)
+        return cache.motors[key]  # type: ignore[no-any-return]
 
 
 @quantity("control.overshoot", unit="1")
 def overshoot(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
     """Overshoot of the controlled slider's speed or position over the step of its target; negative if not reached."""
-    return control.response(control.loop(scene, cache), control.plant).overshoot
+    return control.response(scene, cache).overshoot
+
+
+@quantity("control.settling_time", unit="s")
+def settling_time(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
+    """Time after a step of the target from which the controlled slider stays within 2 % of the step."""
+    seconds = control.response(scene, cache).settling_time
+    if seconds is None:
+        raise InputError("duration: the response does not settle, give a longer one, or smaller gains")
+    return seconds

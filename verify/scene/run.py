@@ -97,7 +97,7 @@ def run_scene(
     from verify.analysis.solution_cache import SolutionCache
     from verify.quantities.base import QUANTITIES
     from verify.scene.warnings import scene_warnings
-    from verify.studies.base import studies_of
+    from verify.studies.base import result_of, studies_of
 
     start = perf_counter()
     loaded, rows = _planned(scene, overrides)
@@ -110,9 +110,9 @@ def run_scene(
         else:
             gates.append(GateResult(gate=gate, unit=QUANTITIES[gate.quantity].unit, reason=row.why))
     results = {}
-    for name, study in studies_of(loaded):
+    for name, _ in studies_of(loaded):
         progress(name)
-        results[name] = study.run(loaded, cache, progress)
+        results[name] = result_of(name, loaded, cache, progress)
     return RunResult(
         scene=loaded,
         gates=tuple(gates),

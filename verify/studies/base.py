@@ -71,3 +71,14 @@ def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
             wave.check(scene)
             found["wave"] = wave
     return [(name, found[name]) for name in STUDIES if name in found]
+
+
+def result_of(name: str, scene: "Scene", cache: "SolutionCache", progress: Progress = lambda step: None) -> "Result":
+    """The result of a study of the scene, computed once for gates and report. Raises InputError without the study."""
+    known = cache.motors.get(("study", name))
+    if known is None or known[0] is not scene:
+        study = dict(studies_of(scene)).get(name)
+        if study is None:
+            raise InputError(f"study = {name!r} is not in the scene: add [{name}]")
+        known = cache.motors["study", name] = scene, study.run(scene, cache, progress)
+    return known[1]

@@ -15,8 +15,8 @@ COLOURS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
 LIMIT = {"color": "#7d8590", "linestyle": "--", "linewidth": 1.0}
 NOTE = (
     "Linear and averaged plant: the wave follows the command with the time constant 2Q/omega of one resonance. Full: "
-    "between resonances it follows sooner and beats at the detuning of the modes; speed over the last drive period. "
-    "Settling: to 2 % of the step. Saturated: fraction of ticks with the command at a limit."
+    "between resonances it beats at the detuning of the modes, and feet take their time to follow it; speed over the "
+    "last drive period. Settling: to 2 % of the step. Saturated: fraction of ticks with the command at a limit."
 )
 
 
@@ -41,7 +41,7 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         loop, responses = self.loop(scene, cache), dict[str, Any]()
         for plant in list(COLOURS)[: list(COLOURS).index(self.plant) + 1]:
             progress(f"response of the {plant} plant")
-            responses[plant] = self.response(loop, plant)
+            responses[plant] = self.response(scene, cache, plant)
         last, hertz = responses[self.plant], scene.drive.frequency_hz if scene.drive else 0.0
         assert scene.slider is not None
         steady = loop.plants["full"].start(self.target if self.of == "speed" else 0.0, float(last.command[-1]))
@@ -60,14 +60,16 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
             percent("overshoot", ".4g"): lambda row: row[1].overshoot,
             si("settling time", "s"): lambda row: row[1].settling_time,
             percent("steady error", "+.3g"): lambda row: row[1].steady_error,
+            Column("steady command", format=".4g"): lambda row: float(row[1].command[-1]),
             percent("saturated", ".3g"): lambda row: row[1].saturated,
         }
-        gains = [Column("K_p"), Column("K_i", "1/s"), si("sample time", "s"), si("motor time constant", "s")]
-        gains += [si("envelope time constant", "s"), percent("overshoot in closed form", ".6g")]
+        gains = [Column("law"), Column("K_p"), Column("K_i", "1/s"), si("sample time", "s")]
+        gains += [si("motor time constant", "s"), si("envelope time constant", "s")]
+        gains += [percent("overshoot in closed form", ".6g")]
         own = loop.controller
-        row = [own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
+        row = ["PI", own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
         what = (self.of, "m" if self.of == "position" else "m/s")
-        command = ("phase", "degrees") if self.output == "phase" else ("amplitude", "1")
+        command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
         ends = last.times[[0, -1]]
         lines = [("target", ends, 0.0 * ends + self.target, LIMIT)]
         steps = [("", ends, 0.0 * ends + one, LIMIT) for one in (own.lower, own.upper)]

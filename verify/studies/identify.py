@@ -187,8 +187,10 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             (name, x, one, points) for name, one in zip(("|H|", "phase") if len(rest) > 1 else ("",), rest, strict=True)
         ]
 
+        measured = points | {"color": "#7d8590"}
+
         def draw(ax: "Axes") -> None:
-            plot_lines(ax, [("data", x, shown[0], points), ("fit", x, shown[1], {})], *model.labels)
+            plot_lines(ax, [("data", x, shown[0], measured), ("fit", x, shown[1], {})], *model.labels)
             ax.set_yscale("log" if self.what == "response" else "linear")
 
         residuals = partial(plot_lines, lines=lines, x=model.labels[0], y=("residual over its sd", ""))

@@ -282,7 +282,8 @@ class Search:
                 evolution.tell(points, self.merits(points))
             return
         n = len(self.distances([0.0] * len(self.requests)))
-        size = (abs(self.merit(start)) if self.feasible else 0.0) or 1.0
+        first = self.found[start][0]  # violates limits where it is the optimum of a coarser model
+        size = (abs(first[0]) if first else 0.0) or 1.0
 
         def values(x: "Array") -> list[float] | None:
             self.merits([x])
