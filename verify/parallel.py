@@ -78,9 +78,14 @@ def _interrupts_blocked() -> Iterator[None]:
 
 
 def _end_with_parent() -> None:
-    """End this worker with its parent, which may be killed: its own end of their queue would keep it waiting."""
-    from multiprocessing import parent_process
+    """End this worker by Ctrl-C at once, and with its parent, which may be killed.
 
+    A worker that handles Ctrl-C while it holds the lock of the queue, or waits at its own end of it, never ends.
+    """
+    from multiprocessing import parent_process
+    from signal import SIG_DFL, SIGINT, signal
+
+    signal(SIGINT, SIG_DFL)
     parent: Any = parent_process()
     Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
 
@@ -99,14 +104,17 @@ def workers(most: int, processes: int | None = None) -> Iterator[Executor | None
         yield None
         return
     from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from multiprocessing import active_children, get_context
 
+    others = active_children()
     # Forked workers inherit caches and compiled kernels; macOS and Windows cannot fork safely.
     context = get_context("fork" if sys.platform == "linux" else "spawn")
     pool = ProcessPoolExecutor(n, context, _end_with_parent) if client is None else client.get_executor(pure=False)
     try:
         yield pool
     except BaseException:
+        for child in set(active_children()).difference(others) if client is None else ():
+            child.terminate()
         pool.shutdown(wait=False)  # on a cluster this cancels what is pending
         raise
     pool.shutdown()
@@ -118,7 +126,7 @@ def completed(
     """(index, result) of each item as it completes. Function and items must be picklable unless `executor` is None.
 
     With `first_here` the first item runs in this process, so that forked workers inherit what it compiles. Raises the
-    error of the first item that fails, the others are cancelled; and InputError where a process dies.
+    error of the first item that fails; and InputError where a process dies.
     """
     todo = list(items)
     own = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
@@ -137,10 +145,6 @@ def completed(
             remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file continues from it"
             raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise
-    finally:
-        if CLIENT.get() is None:  # `shutdown` of a pool that is collected at once may cancel nothing (CPython 3.11)
-            for future in futures:
-                future.cancel()
 
 
 def map_processes(
