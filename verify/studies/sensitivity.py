@@ -53,15 +53,21 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         if not (uniform if self.distribution == "uniform" else other):
             raise InputError(f"sensitivity.input {self.key}: give low below high for uniform, sd alone for the others")
 
-    def of(self, value: Any) -> Any:
-        """The distribution of `scipy.stats` around the scene's value. Raises InputError."""
+    def median(self, value: Any) -> float:
+        """The median, from the scene's value. Raises InputError."""
+        if self.low is not None and self.high is not None:
+            return 0.5 * (self.low + self.high)
+        if not isinstance(value, int | float) or (self.distribution == "lognormal" and value <= 0.0):
+            raise InputError(f"sensitivity.input {self.key}: {value!r} is no suitable number, set it in the scene")
+        return float(value)
+
+    def around(self, median: float) -> Any:
+        """The distribution of `scipy.stats` with a median."""
         from scipy.stats import lognorm, norm, uniform
 
         if self.low is not None and self.high is not None:
             return uniform(self.low, self.high - self.low)
-        if not isinstance(value, int | float) or (self.distribution == "lognormal" and value <= 0.0):
-            raise InputError(f"sensitivity.input {self.key}: {value!r} is no suitable number, set it in the scene")
-        return norm(value, self.sd) if self.distribution == "normal" else lognorm(self.sd, scale=value)
+        return norm(median, self.sd) if self.distribution == "normal" else lognorm(self.sd, scale=median)
 
 
 class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -82,15 +88,14 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError for an unknown quantity, argument or key, and for n that is no power of two."""
         if self.n & (self.n - 1):
             raise InputError(f"sensitivity.n = {self.n}: give a power of two, {1 << self.n.bit_length()}")
-        self.distributions(plain_tables(scene))
+        self.medians(plain_tables(scene))
 
-    def distributions(self, tables: dict[str, Any]) -> list[Any]:
-        """The distribution of each input. Raises InputError."""
+    def medians(self, tables: dict[str, Any]) -> dict[str, float]:
+        """The median of each input by its key. Raises InputError."""
         requests = [(self.quantity, self.arguments)]
-        found = [one.of(value_at(tables, one.key, requests)) for one in self.input]
-        medians = {one.key: float(own.median()) for one, own in zip(self.input, found, strict=True)}
-        varied(tables, requests, medians)
-        if len(medians) < len(found):
+        found = {one.key: one.median(value_at(tables, one.key, requests)) for one in self.input}
+        varied(tables, requests, found)
+        if len(found) < len(self.input):
             raise InputError("sensitivity.input: a key occurs twice, give each once")
         return found
 
@@ -119,7 +124,7 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             values.extend(found[i] for i in range(len(tasks)))
             return np.array([values[-len(tasks) :]])
 
-        distributions = self.distributions(tables)
+        distributions = [one.around(own) for one, own in zip(self.input, self.medians(tables).values(), strict=True)]
         with workers(self.n) as executor:
             shares = sobol_indices(func=quantity, n=self.n, dists=distributions, rng=self.seed)
         both, mixed = np.reshape(values[: 2 * self.n], (2, self.n)), np.reshape(values[2 * self.n :], (self.n, -1)).T
