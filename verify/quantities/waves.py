@@ -103,7 +103,6 @@ def _measure(figure: str) -> Callable[..., float]:
 MEASURES = {
     "standing_wave_ratio": ("1", "Standing-wave ratio (1 + Gamma)/(1 - Gamma) of two waves fitted in the window."),
     "reflection": ("1", "Reflection Gamma: weaker over stronger wave amplitude at the middle of the window."),
-    "envelope": ("1", "Envelope ratio (max - min)/(max + min) of |w| over the window; Gamma for two waves."),
     "travelling_index": (
         "1",
         "Feeny's index 1/cond([Re w, Im w]) over whole half wavelengths; (1 - Gamma)/(1 + Gamma) for two waves.",

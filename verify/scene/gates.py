@@ -1,6 +1,6 @@
 """Gates evaluated: value, band, verdict, and the fraction of the tolerance that is used."""
 
-from math import hypot, inf, isfinite
+from math import hypot, isfinite
 from time import perf_counter
 from typing import Any
 
@@ -53,7 +53,7 @@ def band(gate: Gate) -> tuple[float, float]:
     """Lowest and highest value that pass; infinite where a side is open."""
     if isinstance(gate.expect, float) and gate.within is not None:
         return gate.expect - gate.within, gate.expect + gate.within
-    return -inf if gate.at_least is None else gate.at_least, inf if gate.at_most is None else gate.at_most
+    return gate.bounds
 
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
