@@ -1,4 +1,4 @@
-"""Actuators on a beam: fields and ports against dense elements and devices, powers, orders, the sheet's figures, time."""
+"""Actuators on a beam: fields and ports against dense elements and devices, powers, orders, time."""
 
 import numpy as np
 import pytest
@@ -25,6 +25,7 @@ FORCE = PointForce(position=0.52, amplitude=0.7, phase_deg=31.0)
 DEVICE = Device(position=0.61, dashpot=1.3, stiffness=910.0)
 SERIES = Load(resistance=3.1e5, inductance=47.0)
 PATCH = Patch(length=0.061, thickness=4e-4, width=0.02, sides=1)
+STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
 
 
 def mounted(actuator=SOFT):
