@@ -87,11 +87,7 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tupl
 
 @quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"), devices=True)
 def absorber(
-    scene: Scene,
-    *,
-    position: FromRightEnd,
-    frequency_hz: opt.Frequency | None = None,
-    figure: Figure = "resistance",
+    scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None, figure: Figure = "resistance"
 ) -> float:
     """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
     return _part(_absorber(scene, position, frequency_hz)[2], figure)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from verify.report.result import MISSING, Column, Table, plain
 
 if TYPE_CHECKING:
-    from verify.scene.model import Gate
     from verify.scene.run import RunResult
 
 VERDICTS = {True: "pass", False: "FAIL", None: "skipped"}
@@ -31,7 +30,7 @@ def gates_sentence(run: "RunResult") -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def expected(gate: "Gate") -> str:
+def expected(gate: Any) -> str:
     """The acceptance criterion of a gate in the digits that its tolerance needs: '4469.9 ± 0.5', 'at least 0.9'."""
     if gate.expect is not None:
         if gate.within is None:
@@ -39,8 +38,7 @@ def expected(gate: "Gate") -> str:
         size = abs(complex(gate.expect.re, gate.expect.im)) if hasattr(gate.expect, "re") else abs(gate.expect)
         digits = max(ceil(log10(size / gate.within)), 1) + 2 if size else 3
         return f"{value_text(gate.expect, f'.{digits}g')} ± {gate.within:g}"
-    limits: str = gate.limits
-    return limits
+    return str(gate.limits)
 
 
 def value_text(value: Any, form: str = ".7g") -> str:
