@@ -61,8 +61,6 @@ def scene(*overrides, name="paper-slider"):
 BEAMS = [
     *((beam(**{field: value}), rf"beam\.{field} = .*: give a finite number above 0 \(.+\)")
       for field in TITANIUM for value in (0.0, -1.5, nan, inf, True)),
-    (beam(length="0.73"), r"beam\.length = '0\.73': give a finite number"),
-    (beam(length=10**400), r"beam\.length = a whole number of 1329 bits: give a finite number"),
     (beam(thickness=1e-110), r"beam: its bending stiffness is 0 N m\^2.*check their units"),
     (beam(poissons_ratio=0.6), r"beam\.poissons_ratio = 0\.6: give a finite number"),
     (beam(loss_factor=-0.01), r"beam\.loss_factor = -0\.01"),

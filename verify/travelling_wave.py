@@ -80,12 +80,6 @@ class WaveMeasures:
         return self.waves.standing_wave_ratio
 
     @cached_property
-    def envelope(self) -> float:
-        """(max - min) / (max + min) of |w| over the window; equals Gamma for two waves without near fields."""
-        least, largest = extremes(lambda x: np.abs(self.deflection(x)), self.fine)
-        return (largest - least) / (largest + least)
-
-    @cached_property
     def travelling_index(self) -> float:
         """1 / cond of [Re w, Im w] in the mean square, 0 to 1 (Feeny, J. Sound Vib. 310 (2008) 77).
 

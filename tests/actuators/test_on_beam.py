@@ -1,20 +1,19 @@
-"""Actuators on a beam: fields and ports against dense elements and devices, powers, orders, the sheet's figures, time."""
+"""Actuators on a beam: fields and ports against dense elements and devices, powers, orders, time."""
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from tests.beams import BEAMS, HELD, MODELS, PAPER, close, over
+from tests.beams import BEAMS, HELD, MODELS, close, over
 from tests.reference.dense import Elements
 from tests.reference.piezo_bar import Layer, respond
 from verify import Device, ExactModel, HermiteModel, PointForce, PointMoment, SegmentModel, simulate
 from verify.actuators.on_beam import Mounted, beam_in_time, on_beam
 from verify.actuators.patch import Patch
-from verify.actuators.shunt import Load, absorbing_load
+from verify.actuators.shunt import Load
 from verify.actuators.transducers import Stack
 from verify.errors import InputError, ResonanceError
 from verify.problem.device import of_impedance
-from verify.travelling_wave import DrivenCase, best_drive, matched_device, measure, middle_half
 
 BEAM, HERTZ = replace(BEAMS["clamped-pinned"], loss_factor=0.007), 733.0
 OMEGA, X = 2.0 * np.pi * HERTZ, np.linspace(0.03, 0.7, 17)
@@ -26,6 +25,7 @@ FORCE = PointForce(position=0.52, amplitude=0.7, phase_deg=31.0)
 DEVICE = Device(position=0.61, dashpot=1.3, stiffness=910.0)
 SERIES = Load(resistance=3.1e5, inductance=47.0)
 PATCH = Patch(length=0.061, thickness=4e-4, width=0.02, sides=1)
+STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
 
 
 def mounted(actuator=SOFT):
@@ -154,63 +154,6 @@ def test_the_power_of_all_actuators_is_dissipated_in_bending_and_in_a_dashpot():
     dashpot = DEVICE.dashpot * (OMEGA * abs(found.field.deflection(DEVICE.position)[0])) ** 2
     absorbed = sum(one.power_out for one in found.actuators)
     assert absorbed == pytest.approx(0.5 * (OMEGA * BEAM.loss_factor * bending + dashpot), rel=1e-9)
-
-
-# --- The paper's beam ------------------------------------------------------------------------------------------------
-
-PAPER_HZ, D = 4276.0, 0.0116
-STACK = Stack(layers=20, layer_thickness=0.5e-3, area=25e-6)
-
-
-def paper(phase=90.0, volts=1.0, actuator=STACK, **more):
-    forces = (
-        PointForce(position=D, amplitude=volts),
-        PointForce(position=PAPER.length - D, amplitude=volts, phase_deg=phase),
-    )
-    model = ExactModel(PAPER)
-    return DrivenCase(model=model, forces=forces, frequency_hz=PAPER_HZ, actuator=actuator, kind="voltage", **more)
-
-
-def wave_of(case):
-    field = case.field(case.acting, PAPER_HZ)
-    return measure(field, middle_half(PAPER), field.wavenumber)
-
-
-def test_voltages_of_stiff_stacks_reverse_the_papers_wave():
-    port, k = STACK.port(2.0 * np.pi * PAPER_HZ), ExactModel(PAPER).wavenumber(PAPER_HZ).real
-    assert port.force_factor == pytest.approx(0.93321, abs=5e-6)
-    stiffness = 2.0 * np.pi * PAPER_HZ * abs(port.short_impedance)
-    assert stiffness / (PAPER.bending_stiffness * k**3) == pytest.approx(554.03, abs=0.01)
-    assert wave_of(paper()).standing_wave_ratio == pytest.approx(2.56564, abs=5e-6)
-    directions = [wave_of(paper(actuator=replace(STACK, area=25e-6 * part))).waves.direction for part in (2e-3, 4e-3)]
-    assert directions == [1, -1]
-    assert wave_of(paper()).waves.direction == -1
-    best = best_drive(paper())
-    assert best.equal_phase_deg == pytest.approx(-42.58828, abs=5e-6)
-    assert best.equal_reflection[0] < 1e-7
-
-
-def test_one_stack_takes_the_power_that_the_other_returns():
-    bar = replace(STACK, layers=1, layer_thickness=0.01)  # layer by layer 1.5e-6 more power, relatively
-    case = paper(volts=20 * 100.0, actuator=bar)
-    first, second = case.actuated(case.acting, PAPER_HZ).actuators
-    assert second.power_in == pytest.approx(3.19474e-3, abs=5e-9)
-    assert first.power_in == pytest.approx(-second.power_in, rel=1e-9)
-    assert wave_of(case).energy_flux == pytest.approx(-second.power_in, rel=1e-8)
-
-
-def test_a_shunted_stack_absorbs_the_wave_and_a_thousandth_of_its_inductance_costs_a_third():
-    omega, end = 2.0 * np.pi * PAPER_HZ, matched_device(PAPER, PAPER_HZ, D)
-    load = absorbing_load(STACK.port(omega), end.impedance(omega), omega)
-    assert load.resistance == pytest.approx(4.66507, rel=1e-5)
-    assert load.inductance == pytest.approx(0.1222564, rel=1e-6)
-    reflected = []
-    for inductance in (load.inductance, 1.001 * load.inductance, 1.01 * load.inductance):
-        shunt = (PAPER.length - D, replace(load, inductance=inductance))
-        case = DrivenCase(model=ExactModel(PAPER), forces=(PointForce(position=D),), frequency_hz=PAPER_HZ,
-                          actuator=STACK, shunts=(shunt,))  # fmt: skip
-        reflected.append(wave_of(case).reflection)
-    assert reflected == pytest.approx([0.0, 0.332, 0.962], abs=1e-3)
 
 
 # --- Time ------------------------------------------------------------------------------------------------------------

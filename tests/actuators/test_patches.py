@@ -110,7 +110,7 @@ def test_shunted_patch_damps_the_mode_of_a_cantilever():
     modal = ShuntedMode.bonded(ExactModel(beam).modes(200), patch, 0.031, 1)
     assert [modal.coupling, modal.capacitance] == pytest.approx([mode.coupling, mode.capacitance], rel=2e-3)
     scene = SimpleNamespace(beam=ARM, drive=SimpleNamespace(actuator=ONE), beside="")
-    peak = evaluate("shunt.peak", {"mode": 1, "position": 0.031, "circuit": "resistor"}, scene, None)
+    peak = evaluate("shunt.optimum", {"mode": 1, "position": 0.031, "circuit": "resistor"}, scene, None)
     assert peak == pytest.approx(2.0 / modal.coupling**2, rel=2e-3)
     load, omegas = mode.optimum("series"), mode.omega * np.linspace(0.8, 1.2, 1201)
     unit = shapes[:, 0] @ mass  # the force of the mode's own shape, and its coordinate

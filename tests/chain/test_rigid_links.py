@@ -73,6 +73,14 @@ def test_motion_on_the_roller_equals_dense_integration(method):
     assert abs(found[:, -1]).max() < 1e-12
 
 
+def test_fixed_steps_are_of_order_four():
+    system, times = odd_chain(3, 5, tip="roller"), np.linspace(0.0, 0.02, 41)
+    start, step = at_rest(system), 0.4 * step_limit(system)
+    exact = simulate(system, start, times, tolerance=1e-13).angles
+    coarse, fine = (abs(simulate(system, start, times, step=one).angles - exact).max() for one in (step, step / 2))
+    assert 3.7 < np.log2(coarse / fine) < 4.3
+
+
 def test_a_free_spinning_chain_keeps_its_angular_momentum():
     system = odd_chain(4, 5, stiffness=np.append(0.0, np.full(4, 1.3)), dashpots=np.full(5, 0.0), loads=(),
                        gravity=(0.0, 0.0), hub_rate=0.0)  # fmt: skip

@@ -73,13 +73,10 @@ def test_force_and_efficiency_are_integrals_over_the_contact(phi, r):
     assert layer.efficiency(phi, r) == pytest.approx(r * drag / power, rel=1e-11)
 
 
-@pytest.mark.parametrize(
-    ("ratio", "phase"), [(1.5, 4.295944393155), (2.0, 5.182450251310), (37.3, None), (2.71e5, None)]
-)
-def test_a_mass_lands_where_its_parabola_meets_the_surface(ratio, phase):
+@pytest.mark.parametrize("ratio", [1.5, 2.0, 37.3, 2.71e5])
+def test_a_mass_lands_where_its_parabola_meets_the_surface(ratio):
     lands, leaves = impact.landing_phase(ratio), asin(1.0 / ratio)
-    if phase is not None:
-        assert lands == pytest.approx(phase, abs=2e-12)
+    if ratio < 10.0:
         assert lands == pytest.approx(bounces(ratio, 0.0, 3)[0].phase, abs=1e-12)
     time = lands - leaves
     height = 1.0 / ratio + sqrt(1.0 - 1.0 / ratio**2) * time - 0.5 * time * time / ratio

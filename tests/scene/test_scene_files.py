@@ -94,10 +94,8 @@ def test_every_error_of_a_file_is_listed(tmp_path):
         ("0.73", "'73cm'", ["beam.length = '73cm': give a number alone, in SI units: 0.08 for 80 mm"]),
         ("0.73", "[0, 73]", ["beam.length = [0, 73]: give one number, with a point before its decimals"]),
         ("0.73", "1" + 400 * "0", ["beam.length = a whole number of 1329 bits: give a finite number above 0 (m)"]),
-        ("length", "lenght", ["beam.lenght is not a known key: did you mean 'length'?"]),
         ("length = 0.73", "", ["beam.length is missing: give it a value"]),
         ('id = "g"', "", ["gate[0].id is missing: give it a value"]),
-        (GATE, GATE + GATE, ["gate.g occurs twice: give every gate its own id"]),
         (
             "density = 4470",
             "density = 4470\nsupports = ['pinned', 'fre']",
@@ -108,14 +106,6 @@ def test_every_error_of_a_file_is_listed(tmp_path):
 )  # fmt: skip
 def test_error_sentence_names_field_value_and_remedy(tmp_path, old, new, sentences):
     assert errors(tmp_path, SCENE.replace(old, new, 1)) == sentences
-
-
-def test_parts_that_do_not_fit_together_are_listed(tmp_path):
-    text = SCENE + GATE + "[drive]\nfrequency_hz = 90.0\nforce = [{ position = 0.74 }]\n"
-    assert errors(tmp_path, text) == [
-        "gate.g occurs twice: give every gate its own id",
-        "drive.force.position = 0.74 lies off the beam: give a position between 0 and 0.73 m",
-    ]
 
 
 def test_unreadable_files_are_refused(tmp_path):
@@ -270,7 +260,6 @@ def test_override_reaches_its_value(path, assignment, read):
     [
         ("beam.lenght=0.4", r"^beam\.lenght is not a known key: did you mean 'length'\?$"),
         ("baem.length=0.4", r"^baem is not a known key: did you mean 'beam'\?$"),
-        ("beam.length=long", r"beam\.length = 'long': give a finite number"),
         ("beam.length=80hm", r"beam\.length = '80hm': give a number with one of the units m, cm, mm"),
         ("beam.tension=3mm", r"beam\.tension = '3mm': give a number with one of the units N, mN, kN"),
         ("beam.foundation=3kN", r"beam\.foundation = '3kN': give a number alone, in SI units"),

@@ -86,14 +86,6 @@ def test_orders_outside_the_asymptotic_range_are_marked(run, renders):
     assert hollow == [[20, 40, 80], [20, 40], [20, 40]]
 
 
-@pytest.mark.parametrize(
-    ("scene", "words"), [("stepped-beam", "at x = 0.25 m alone"), ("steel-cantilever", "series nowhere")]
-)
-def test_printed_joints_say_where_they_differ(run, scene, words):
-    result = run(scene, Convergence(modes=(2,), counts=(20, 40), joints="printed"))
-    assert any(words in note for note in result.tables[0].notes)
-
-
 def test_variants_stand_side_by_side(run, renders):
     result = run("taut-strip", Convergence(modes=(3,), counts=(10, 20, 40), joints=("series", "tensioned")))
     last = {row["model"]: row["order"] for row in rows_of(result.tables[0], N=40)}

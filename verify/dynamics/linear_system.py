@@ -162,12 +162,7 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def basis_of(
-    beam: Beam,
-    model: str,
-    count: int | None,
-    modes: int | None,
-    line: str = "spline",
-    loads: Sequence[PointLoad] = (),
+    beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline", loads: Sequence[PointLoad] = ()
 ) -> TimeBasis:
     """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError."""
     moments = [load.position for load in loads if isinstance(load, PointMoment)]

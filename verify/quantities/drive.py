@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.quantities import options as opt
 from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Scene, quantity
-from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured
+from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured, pure_drive
 
 if TYPE_CHECKING:
     from verify.actuators.port import Port
@@ -77,12 +77,7 @@ def pure_voltage_phase(
     scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
 ) -> float:
     """Phase lead of the second of two equal voltages with least reflection, in (-180, 180] degrees."""
-    from verify.travelling_wave import best_drive
-
-    case = driven_case(scene, _voltages(options))
-    best = best_drive(case, window, direction=1 if direction == "+x" else -1)
-    best.check_exists()
-    return best.equal_phase_deg
+    return pure_drive(scene, _voltages(options), window, direction).equal_phase_deg
 
 
 @quantity("drive.power", unit="W", reads=DRIVEN, devices=True)

@@ -18,8 +18,6 @@ from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
 
 Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with short-circuited electrodes")]
-Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
-Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
 Figure = Annotated[Literal["resistance", "inductance"], Meta(description="ohm or H")]
 
 
@@ -56,16 +54,6 @@ def _part(load: Load, figure: str) -> float:
     return value
 
 
-@quantity("shunt.peak", unit="1", reads=("beam", "drive"))
-def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
-    """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
-    mode, load = shunt.best(scene)
-    if inductance is not None:
-        _part(load, "inductance")
-    own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
-    return mode.peak(msgspec.structs.replace(load, **own))
-
-
 @quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))
 def optimum(
     scene: Scene,
@@ -99,11 +87,7 @@ def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tupl
 
 @quantity("shunt.absorber", unit="ohm or H", reads=("beam", "drive"), devices=True)
 def absorber(
-    scene: Scene,
-    *,
-    position: FromRightEnd,
-    frequency_hz: opt.Frequency | None = None,
-    figure: Figure = "resistance",
+    scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None, figure: Figure = "resistance"
 ) -> float:
     """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
     return _part(_absorber(scene, position, frequency_hz)[2], figure)

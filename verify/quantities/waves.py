@@ -103,7 +103,6 @@ def _measure(figure: str) -> Callable[..., float]:
 MEASURES = {
     "standing_wave_ratio": ("1", "Standing-wave ratio (1 + Gamma)/(1 - Gamma) of two waves fitted in the window."),
     "reflection": ("1", "Reflection Gamma: weaker over stronger wave amplitude at the middle of the window."),
-    "envelope": ("1", "Envelope ratio (max - min)/(max + min) of |w| over the window; Gamma for two waves."),
     "travelling_index": (
         "1",
         "Feeny's index 1/cond([Re w, Im w]) over whole half wavelengths; (1 - Gamma)/(1 + Gamma) for two waves.",
@@ -164,7 +163,8 @@ def best_frequency(
 Direction = Annotated[Literal["+x", "-x"], Meta(description="direction of the wave")]
 
 
-def _best_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
+def pure_drive(scene: Scene, options: FieldOptions, window: Window | None, direction: Direction) -> "BestDrive":
+    """The drive without reflection towards one end. Raises InputError where there is none."""
     from verify.travelling_wave import best_drive
 
     best = best_drive(driven_case(scene, options), window, direction=1 if direction == "+x" else -1)
@@ -177,7 +177,7 @@ def best_ratio(
     scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
 ) -> float:
     """Amplitude ratio of the second to the first actuator that leaves no reflection."""
-    return _best_drive(scene, options, window, direction).ratio
+    return pure_drive(scene, options, window, direction).ratio
 
 
 @quantity("wave.best_ratio_phase", unit="deg", reads=DRIVEN, devices=True)
@@ -185,7 +185,7 @@ def best_ratio_phase(
     scene: Scene, options: FieldOptions, *, window: Window | None = None, direction: Direction = "+x"
 ) -> float:
     """Phase lead of the second actuator that leaves no reflection, in (-180, 180] degrees."""
-    return _best_drive(scene, options, window, direction).phase_deg
+    return pure_drive(scene, options, window, direction).phase_deg
 
 
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)

@@ -38,8 +38,7 @@ def expected(gate: Any) -> str:
         size = abs(complex(gate.expect.re, gate.expect.im)) if hasattr(gate.expect, "re") else abs(gate.expect)
         digits = max(ceil(log10(size / gate.within)), 1) + 2 if size else 3
         return f"{value_text(gate.expect, f'.{digits}g')} ± {gate.within:g}"
-    sides = (("at least", gate.at_least), ("at most", gate.at_most))
-    return ", ".join(f"{side} {limit:g}" for side, limit in sides if limit is not None)
+    return str(gate.limits)
 
 
 def value_text(value: Any, form: str = ".7g") -> str:

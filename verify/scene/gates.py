@@ -1,6 +1,6 @@
 """Gates evaluated: value, band, verdict, and the fraction of the tolerance that is used."""
 
-from math import hypot, inf, isfinite
+from math import hypot, isfinite
 from time import perf_counter
 from typing import Any
 
@@ -49,13 +49,6 @@ def run_gate(gate: Gate, scene: Scene, cache: "SolutionCache") -> GateResult:
     )
 
 
-def band(gate: Gate) -> tuple[float, float]:
-    """Lowest and highest value that pass; infinite where a side is open."""
-    if isinstance(gate.expect, float) and gate.within is not None:
-        return gate.expect - gate.within, gate.expect + gate.within
-    return -inf if gate.at_least is None else gate.at_least, inf if gate.at_most is None else gate.at_most
-
-
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
     kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
@@ -71,7 +64,9 @@ def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     elif isinstance(value, float | int) and not isfinite(value):
         outside = f"{value!r} is not finite"
     elif isinstance(value, float | int) and isinstance(gate.expect, float) == (gate.within is not None):
-        low, high = band(gate)
+        low, high = gate.bounds
+        if isinstance(gate.expect, float) and gate.within is not None:
+            low, high = gate.expect - gate.within, gate.expect + gate.within
         fraction = _fraction(value, low, high)
         side = f"below {low!r}" if value < low else f"above {high!r}"
         outside = "" if low <= value <= high else f"{value!r} lies {side}"

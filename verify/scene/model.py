@@ -141,6 +141,11 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             raise InputError(f"{field}.{numbers[0]}: give {numbers[0]} with {numbers[1]}, or at_least, at_most")
 
     @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper limit; infinite where a side is open."""
+        return -inf if self.at_least is None else self.at_least, inf if self.at_most is None else self.at_most
+
+    @property
     def limits(self) -> str:
         """'at least 0.02, at most 0.03'."""
         given = (("at least", self.at_least), ("at most", self.at_most))
@@ -210,8 +215,8 @@ class Claim(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return computed < 0.0 if self.value == "negative" else computed > 0.0
         if self.value is not None and self.tolerance is not None:
             return abs(computed - self.value) <= self.tolerance
-        low = -inf if self.at_least is None else self.at_least
-        return low <= computed <= (inf if self.at_most is None else self.at_most)
+        low, high = self.bounds
+        return low <= computed <= high
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

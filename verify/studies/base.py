@@ -47,10 +47,7 @@ OWN = (
     "sensitivity",
 )  # fmt: skip
 STUDIES: Registry[type[Study]] = Registry(
-    "study",
-    "verify.studies",
-    homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN},
-    classes=True,
+    "study", "verify.studies", homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN}, classes=True
 )  # study classes by the name of their section, in the order in which they run
 
 

@@ -95,10 +95,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         todo = [i for i in range(len(combinations)) if i not in lines]
         tasks = [(tables, self, combinations[i], i) for i in todo]
         # unbuffered: an interrupt comes before or after a whole line
-        with (
-            open(file or os.devnull, "ab", buffering=0) as out,
-            workers(len(todo) - 1) as executor,
-        ):
+        with open(file or os.devnull, "ab", buffering=0) as out, workers(len(todo) - 1) as executor:
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
                 out.write(line)
                 lines[todo[i]] = line
