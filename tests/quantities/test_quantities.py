@@ -132,7 +132,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "identify.interval": ("decay", {"parameter": "slope"}),
     "identify.coverage": ("decay", {"parameter": "mu", "repeats": 100}),
     "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
-    "shunt.optimum": ("bare", {"coupling": 0.17, "circuit": "parallel"}),
+    **{f"shunt.{n}": ("bare", {"coupling": 0.17, "circuit": "parallel"}) for n in ("peak", "optimum")},
     **{f"shunt.{n}": ("actuated", {"position": 0.083}) for n in ("absorber", "reflection")},
     "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
     "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),

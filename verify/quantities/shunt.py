@@ -18,6 +18,8 @@ from verify.quantities.waves import FromRightEnd
 from verify.validation import Relative, check_number, unit
 
 Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with short-circuited electrodes")]
+Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
+Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
 Figure = Annotated[Literal["resistance", "inductance"], Meta(description="ohm or H")]
 
 
@@ -52,6 +54,16 @@ def _part(load: Load, figure: str) -> float:
     if value is None:
         raise InputError(f"{figure}: the optimum {load!r} has none, choose another circuit")
     return value
+
+
+@quantity("shunt.peak", unit="1", reads=("beam", "drive"))
+def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
+    """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
+    mode, load = shunt.best(scene)
+    if inductance is not None:
+        _part(load, "inductance")
+    own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
+    return mode.peak(msgspec.structs.replace(load, **own))
 
 
 @quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))

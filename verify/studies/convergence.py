@@ -13,6 +13,7 @@ from verify.analysis.solution_cache import SolutionCache, comparable, theory_of,
 from verify.analysis.variants import Rules, Variant
 from verify.errors import InputError, NoBracketError
 from verify.linear.registry import MEAN, MODELS
+from verify.problem.beam import Beam
 from verify.report.plotting import PAPER, slope_guide
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
@@ -67,7 +68,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         cells = [tuple(list(row.values())[:10]) for row in rows]
         rule = " with wall half" if "clamped" in cache.beam.supports else ""
         title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, [] if rule else bounds)
-        tables = [Table(title, columns, cells, NOTES)]
+        tables = [Table(title, columns, cells, [*NOTES, *self._printed_joints(cache.beam)])]
         if bounds:
             columns = [Column("mode"), Column("N"), Column("lower", "Hz", ".8g"), Column("upper", "Hz", ".8g")]
             columns += [percent("width", ".4g"), percent("error of the mean")]
@@ -138,6 +139,26 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
                 for last, finer in pairwise(rows[-len(self.counts) :]):  # three sizes in range: two orders
                     finer["gci"] = finer["gci"] if last["asymptotic"] and finer["asymptotic"] else None
         return rows
+
+    def _printed_joints(self, beam: "Beam") -> list[str]:
+        """A note on where joints as printed differ from those in series; none without printed joints."""
+        import numpy as np
+
+        from verify.linear.mesh import divide
+
+        notes: dict[str, None] = {}
+        for settings in self.combinations:
+            if ("joints", "printed") in settings:
+                parts = divide(beam, max(self.counts), float(dict(settings).get("grading", 1.0)))
+                figures: Any = parts.second_moments, parts.moduli / parts.lengths
+                changes = [abs(np.diff(np.log(v))) > 1e-9 for v in figures]
+                at = parts.unit * np.cumsum(parts.lengths)[:-1][changes[0] & changes[1]]
+                places = ", ".join(f"{x:.4g}" for x in at)
+                where = f"at x = {places} m alone, where links of unlike I and of unlike material or length (E/l) meet"
+                none = "nowhere, no links meet that are unlike in I and in material or length (E/l)"
+                note = f"they differ from joints in series {where if places else none}."
+                notes[f"Joints printed, N = {max(self.counts)}: {note}"] = None
+        return list(notes)
 
     def _bounds(self, cache: "SolutionCache") -> tuple[list[Row], list[str]]:
         """(a row for each mode and size with a bound, why there are none elsewhere)."""
