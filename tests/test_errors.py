@@ -114,6 +114,8 @@ SCENES = [
     (scene("drive.frequency_hz=1e300"), r"drive\.frequency_hz = 1e\+300 Hz .* check the beam's units"),
     (scene("drive.kind=charge"), r"drive\.kind = 'charge' is not known: known are force, moment, displacement"),
     (scene("drive.kind=voltage"), r"drive\.actuator is missing: drive\.kind = 'voltage' needs the design"),
+    (scene("drive.kind=force", name="patch-motor"), r"drive\.kind = 'force': its amplitudes are not those of a"),
+    (scene("drive.actuator.length=3", name="patch-motor"), r"patch\.length = 3\.0: give at most the beam's length"),
     (scene("drive.actuator.kind=stak"), r"drive\.actuator\.kind = 'stak' is not known: did you mean 'stack'"),
     (scene("drive.actuator.layers=3"), r"drive\.actuator\.kind is missing: give one of stack, bar-33"),
     (scene("drive.force.0.position=0.6"), r"drive\.force\.position = 0\.6 lies off the beam"),

@@ -94,7 +94,8 @@ def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
         if isinstance(value, list | tuple):
             return f"{subject}: give one number, with a point before its decimals"
         if isinstance(value, str) and _WITH_UNIT.match(value):
-            return f"{subject}: give a number alone, in SI units: 0.08 for 80 mm"
+            own = extra_of(kind, "unit")
+            return f"{subject}: give a number alone, in {own if own and own != 'm' else 'SI units: 0.08 for 80 mm'}"
         metas = metas_of(kind)
         limits = [f"{text} {edge:g}" for name, text in _LIMITS for m in metas if (edge := getattr(m, name)) is not None]
         number = f"a {'finite' if float in arms else 'whole'} number {' and '.join(limits)}".rstrip()

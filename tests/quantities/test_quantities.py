@@ -43,6 +43,7 @@ AT_ONCE = {"start": "rest", "soft_start_periods": 0.0, "modal_damping": None, "s
 
 def scene_of(beam, slider=None, duration=None, devices=(), **drive):
     forces, on_it = (SceneForce(**asdict(force)) for force in FORCES), (SceneDevice(**asdict(one)) for one in devices)
+    drive.setdefault("kind", "voltage" if "actuator" in drive else "force")
     drive = Drive(frequency_hz=731.0, force=tuple(forces), device=tuple(on_it), **drive)
     studies = {"motion": Motion(duration=duration, **AT_ONCE)} if duration else {}
     return Scene(name="case", beam=beam, drive=drive, slider=slider, studies=studies)

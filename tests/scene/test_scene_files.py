@@ -262,7 +262,7 @@ def test_override_reaches_its_value(path, assignment, read):
         ("baem.length=0.4", r"^baem is not a known key: did you mean 'beam'\?$"),
         ("beam.length=80hm", r"beam\.length = '80hm': give a number with one of the units m, cm, mm"),
         ("beam.tension=3mm", r"beam\.tension = '3mm': give a number with one of the units N, mN, kN"),
-        ("beam.foundation=3kN", r"beam\.foundation = '3kN': give a number alone, in SI units"),
+        ("beam.foundation=3kN", r"beam\.foundation = '3kN': give a number alone, in N/m"),
         ("beam.length=2%", r"beam\.length = '2%': give a finite number"),
         ("beam.supports=cantilever", r"beam\.supports = 'cantilever': give a list"),
         ("beam.length.x=1", r"--set beam\.length is a value, not a table"),

@@ -144,6 +144,8 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
             name: getattr(section, name)
             for name in ("bending_stiffness", "mass_per_length", "rotary_inertia", "extreme_fibre")
         } | {"shear_stiffness": beam.base_section.shear_stiffness}
+        if self.length > beam.length:
+            raise InputError(f"patch.length = {self.length!r}: give at most the beam's length, {beam.length!r} m")
         centres = sorted(positions) if hasattr(positions, "__iter__") else [positions]
         sections, end = list[Section](), 0.0
         for centre in centres:

@@ -52,10 +52,7 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     def __post_init__(self) -> None:
         validate(self, "shunt")
         if self.capacitance == 0.0 or (self.resistance is self.inductance is self.capacitance is None):
-            raise InputError(
-                f"shunt.capacitance = {self.capacitance!r}: give a capacitance other than 0, a resistance or an "
-                "inductance"
-            )
+            raise InputError("shunt: it has no load, give a resistance, an inductance, or a capacitance other than 0")
 
     @property
     def rational(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

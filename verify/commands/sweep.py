@@ -27,7 +27,8 @@ def sweep(
 ) -> None:
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
-    A KEY with a dot is a value of the scene, one without is an argument of the quantities.
+    A KEY with a dot is a value of the scene, one without is an argument of the quantities; a value that is a list is in
+    double brackets: window=[[0.1,0.3]].
     FILE has JSON lines: a kill or Ctrl-C loses only what is being computed, the same call computes the rest.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """

@@ -21,8 +21,11 @@ def scene_actuator(scene: Scene, kind: type = Actuator, example: str = "stack") 
     """The scene's actuator. Raises InputError where it has none of this kind."""
     actuator = scene.drive.actuator if scene.drive is not None else None
     if not isinstance(actuator, kind):
-        what = "missing" if actuator is None else "of another kind"
-        raise InputError(f"drive.actuator is {what}: add [drive.actuator] with kind = {example!r} and its sizes")
+        remedy = f"give kind = {example!r} and its sizes"
+        if actuator is None:
+            raise InputError(f"drive.actuator is missing: add [drive.actuator], and {remedy}")
+        own = type(actuator).__name__.lower()
+        raise InputError(f"drive.actuator is a {own}, for which this quantity is not defined: {remedy}")
     return actuator
 
 

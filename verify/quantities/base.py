@@ -195,7 +195,8 @@ def describe(*words: str) -> list[dict[str, Any]]:
         if all(word.casefold() in text for word in words):
             quantities.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
     if not quantities:
-        raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, leave a word out")
+        remedy = "leave a word out" if len(words) > 1 else "give another word, or none for all"
+        raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, {remedy}")
     return quantities
 
 

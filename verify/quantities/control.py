@@ -62,11 +62,15 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
 
         if self.of == "position" and self.output == "amplitude":
             raise InputError("output = 'amplitude': a position loop reverses the motor, give output = 'phase'")
+        if (slider := scene.slider) is None:
+            raise InputError(
+                "slider is missing: a controlled motor has one, add [slider] with mass and mu to the scene"
+            )
         opt.check_count(self.model, self.count)
         opt.check_forces(scene, "a controlled motor")
         damping = 0.5 * scene.beam.loss_factor if self.modal_damping is None else self.modal_damping
-        if (slider := scene.slider) is None or not damping:
-            raise InputError("control: a controlled motor has a [slider] and a damped beam, add it or modal_damping")
+        if not damping:
+            raise InputError("beam.loss_factor = 0: a controlled motor has a damped beam, give it or modal_damping")
         hertz, forces = opt.drive_frequency(scene), opt.DriveOptions().forces(scene)
         case = MotorCase(
             beam=scene.beam, forces=forces, frequency_hz=hertz, slider=slider, model=self.model, count=self.count,
@@ -84,7 +88,10 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
 
         speed = self.target if self.of == "speed" else 0.0
         if not self.lower < (at := command_at(speed)) < self.upper:
-            raise InputError(f"target = {self.target!r}: no command within its limits holds this speed, change it")
+            raise InputError(
+                f"target = {self.target!r}: no command from {self.lower!r} to {self.upper!r} holds this speed, give "
+                "one of the sign of wave.crest_speed and below its size, or wider limits"
+            )
         linear, plant_gain, motor = averaged.linearised(speed, at)
         h = self.sample_time or 8.0 / hertz
         slow, fast = max(motor, envelope), min(motor, envelope) + (self.delay + 0.5) * h

@@ -101,6 +101,11 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         if self.actuator is None and (self.shunt or self.kind in ("voltage", "current")):
             cause = "drive.shunt" if self.shunt else f"drive.kind = {self.kind!r}"
             raise InputError(f"drive.actuator is missing: {cause} needs the design of an actuator, give it a kind")
+        if self.actuator and self.force and not self.shunt and self.kind not in ("voltage", "current"):
+            raise InputError(
+                f"drive.kind = {self.kind!r}: its amplitudes are not those of a drive.actuator, give 'voltage' or "
+                "'current', or leave drive.actuator out"
+            )
 
 
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -257,9 +262,12 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         try:
             if self.drive is not None:
                 check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
-            forces, _, _ = self.forces, self.devices, self.shunts
+            forces, _, shunts = self.forces, self.devices, self.shunts
             kind, actuator = (self.drive.kind, self.drive.actuator) if self.drive else ("force", None)
             bending = kind in ("voltage", "current") and isinstance(actuator, Patch)  # at its ends
+            patches = [*(force.position for force in forces if bending), *(x for x, _ in shunts)]
+            if isinstance(actuator, Patch) and patches:
+                actuator.on(self.beam, patches)
             for force in forces if not (bending or kind == "displacement") else ():
                 across, turning = {"amplitude": force.amplitude}, dict[str, float]()
                 if kind == "moment":

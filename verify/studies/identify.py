@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Study
 from verify.studies.charts import plot_lines
-from verify.validation import unit
+from verify.validation import check_number, unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,9 +67,9 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     y: Annotated[tuple[float, ...], Meta(description="Speeds, m/s, frequencies, Hz, or |H|, m/N.")] = ()
     file: Annotated[str | None, Meta(description="Columns x, y, for H also phase or re, im; or .uff.")] = None
     synthetic: Annotated[Synthetic | None, Meta(description="Data of the model with noise.")] = None
-    force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway.")] = 1.0
-    force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H.")] = 0.0
-    sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H.")] = 0.0
+    force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway, N/s.")] = 1.0
+    force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H, m.")] = 0.0
+    sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H, m.")] = 0.0
     sensor: Annotated[
         Literal["displacement", "velocity", "acceleration"], Meta(description="What the data of H divide by the force.")
     ] = "displacement"
@@ -95,6 +95,10 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.what == "frequencies":
             return beam.frequencies(scene.beam, names, x)
         if self.what == "response":
+            for field in ("force_at", "sensor_at"):
+                check_number(
+                    f"identify.{field}", getattr(self, field), "metres, on the beam", at_most=scene.beam.length
+                )
             return beam.response(scene.beam, names, x, self.force_at, self.sensor_at, phase=phase)
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")

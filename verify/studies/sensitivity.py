@@ -153,9 +153,11 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         unit = "" if (own := QUANTITIES[self.quantity].unit) == "1" or self.logarithm else f" {own}"
         what, largest = f"ln |{self.quantity}|" if self.logarithm else self.quantity, int(np.argmax(total))
         at, cache, requests = varied(tables, requests, {})
+        rivals = [key for i, key in enumerate(keys) if i != largest and ends.high[1, i] > ends.low[1, largest]]
+        unclear = f" (its interval overlaps that of {', '.join(rivals)}: no rank)" if rivals else ""
         return Result(
             summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}; "
-            f"{keys[largest]} has the largest share in its variance, {total[largest]:.3f}.",
+            f"{keys[largest]} has the largest share in its variance, {total[largest]:.3f}{unclear}.",
             tables=[Table(f"Shares in the variance of {what}", columns, rows, NOTES)],
             figures=[Figure("sensitivity-shares", f"Shares in the variance of {what}", CAPTION, partial(_draw, rows))],
             data={"points": len(values), "mean": centre, "sd": both.std(), "sum of first order": first.sum()},

@@ -62,8 +62,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_waves(scene.beam, frequency, middle_half(scene.beam))
         except WindowError as error:
             raise WindowError(
-                f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): leave [wave] out, and use gates with "
-                "a window of their own"
+                f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): use quantities or gates "
+                "with a window of their own, and leave a section [wave] out"
             ) from None
         bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():

@@ -31,7 +31,7 @@ def check_span(
     couples: Sequence[float] = (),
     theory: str = "euler-bernoulli",
 ) -> None:
-    """Raise WindowError for a window with a force, a device against rotation, an attachment or a step inside.
+    """Raise WindowError for a window with a force, a couple, an attachment or a step inside.
 
     `positions` of forces, `couples` of devices against rotation, m. Raises InputError for a window off the beam.
     """
@@ -44,7 +44,10 @@ def check_span(
         raise InputError(f"{name}: give start and end, ascending, between 0 and {beam.length!r} m")
     check_clear(beam, (start, end), name)
     if inside := [p for p in couples if start < p < end]:
-        raise WindowError(f"{name} contains a device against rotation at {as_written(inside)} m: choose another")
+        raise WindowError(
+            f"{name} contains a moment, an end of a patch or a device against rotation, at {as_written(inside)} m: "
+            "choose another"
+        )
     edges = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
     for left, right, piece in zip(edges, edges[1:], beam.pieces, strict=False):
         alike = all(getattr(piece, name) == getattr(beam.base_section, name) for name in _DEPENDS[theory])
