@@ -15,6 +15,7 @@ from verify.quantities.base import Scene, quantity
 from verify.quantities.waves import DRIVEN, Direction, FieldOptions, Window, driven_case, measured, pure_drive
 
 if TYPE_CHECKING:
+    from verify.actuators.on_beam import ActuatorState
     from verify.actuators.port import Port
     from verify.analysis.solution_cache import SolutionCache
     from verify.travelling_wave import DrivenCase
@@ -83,10 +84,20 @@ def pure_voltage_phase(
 @quantity("drive.power", unit="W", reads=DRIVEN, devices=True)
 def power(scene: Scene, options: FieldOptions, *, actuator: Number = 1) -> float:
     """Mean electrical power into an actuator; negative where it returns power to its source or feeds a load."""
+    return _state(scene, options, actuator).power_in
+
+
+@quantity("drive.current", unit="A", reads=DRIVEN, devices=True)
+def current(scene: Scene, options: FieldOptions, *, actuator: Number = 1) -> float:
+    """Amplitude of the current into an actuator, by which an amplifier is chosen."""
+    return abs(_state(scene, options, actuator).current)
+
+
+def _state(scene: Scene, options: FieldOptions, actuator: int) -> "ActuatorState":
     case: DrivenCase = driven_case(scene, options)
     if case.kind == "displacement" or not (case.electrical or case.shunts):
         raise InputError(f"drive.kind = {case.kind!r}: no actuator takes electrical power, give 'voltage' or 'current'")
     states = case.actuated(case.acting, case.frequency_hz).actuators
     if actuator > len(states):
         raise InputError(f"actuator = {actuator!r}: the drive has {len(states)} actuators, give at most that")
-    return states[actuator - 1].power_in
+    return states[actuator - 1]
