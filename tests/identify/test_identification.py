@@ -305,6 +305,21 @@ def test_friction_on_the_driven_beam():
     assert one.sd < 0.02
 
 
+def test_static_friction_of_a_run_is_kinetic_unless_it_is_a_parameter():
+    scene, cache = load_scene("paper-slider"), SolutionCache(BEAM)
+    own = Identify(what="run", parameters=("mu",), start={"mu": 0.3}, count=25, noise=1e-4,
+                   synthetic=Synthetic(noise=1e-4, span=(0.0, 3e-3), points=60, true={"mu": 0.2}))  # fmt: skip
+    high, low, apart = (replace(scene.slider, law="coulomb", slope=None, mu=mu, mu_static=static)
+                        for mu, static in ((0.3, None), (0.2, None), (0.15, 0.25)))  # fmt: skip
+    data = [own.data(replace(scene, slider=one))[1] for one in (high, low)]
+    assert data[0] == pytest.approx(data[1], abs=1e-12)
+    both = replace(own, parameters=("mu", "mu_static"), synthetic=replace(own.synthetic, true={}), start={})
+    both = replace(both, start={"mu_static": 0.26}, profiles=False)
+    found = both.fitted(replace(scene, slider=apart), cache)[2].estimates
+    assert found["mu"].interval[0] < 0.15 < found["mu"].interval[1]
+    assert found["mu_static"].reason  # one step of the curve is of the size of the noise
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [

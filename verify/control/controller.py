@@ -1,7 +1,7 @@
 """Sampled controllers as frozen values, whose `step` maps a state and a measurement to the next state and a command."""
 
 from collections.abc import Callable
-from math import exp, inf, pi, sin, sqrt
+from math import inf, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -65,15 +65,6 @@ def magnitude_optimum(plant_gain: float, slow: float, fast: float) -> tuple[floa
     1/sqrt(2) (C. Kessler, Regelungstechnik 6:395 and 432, 1958).
     """
     return 0.5 * slow / (plant_gain * fast), 0.5 / (plant_gain * fast)
-
-
-def step_overshoot(loop_gain: float, slow: float, fast: float) -> float:
-    """Overshoot of the closed loop K/(slow s (1 + fast s)), a ratio, K being K_p times the gain of the plant.
-
-    exp(-pi zeta/sqrt(1 - zeta^2)) with the damping ratio zeta = sqrt(slow/(K fast))/2; 0 from zeta = 1 on.
-    """
-    zeta = 0.5 * sqrt(slow / (loop_gain * fast)) if loop_gain > 0.0 else inf
-    return exp(-pi * zeta / sqrt(1.0 - zeta**2)) if zeta < 1.0 else 0.0
 
 
 def phase_locked_loop(

@@ -1,7 +1,7 @@
 """Plants as frozen values, whose `advance` maps a state and a command, constant over a tick, to the state after it."""
 
 from collections.abc import Callable
-from math import asin, copysign, cos, pi
+from math import asin, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,14 +16,10 @@ from verify.linear.field import phasor, point_force
 from verify.motor.steady_state import MotorCase, crest_speed, steady_state
 from verify.problem.beam import PointForce
 
-Force = Callable[[float, float], tuple[float, float, float]]
-"""(speed, m/s, constant command) -> (mean force along +x, N, its derivatives by speed and by command)."""
-STEEPEST = 20.0
-"""Largest derivative of s by the speed over the crest speed in a force-speed map."""
+Force = Callable[[float, float], float]
+"""(speed, m/s, constant command) -> mean force along +x, N."""
 MOST_PERIODS = 400
 """Drive periods until the mean force of unilateral contact converges."""
-SUBSTEPS = 2
-"""Steps of the averaged motor in a tick, each with a linear force."""
 
 
 def commanded(case: MotorCase, command: float, output: str) -> MotorCase:
@@ -58,15 +54,9 @@ def force_map(case: MotorCase, limits: tuple[float, float], output: str, size: t
     table = [[mean_force(motor, v) for v in (fastest * np.sin(angles)).tolist()] for motor, fastest in motors]
     spline = RectBivariateSpline(grid, angles, table, kx=min(3, size[0] - 1), ky=3)
 
-    def force(v: float, y: float) -> tuple[float, float, float]:
+    def force(v: float, y: float) -> float:
         at = min(max(y, lower), upper)
-        scale = top * (at if scaled else 1.0)
-        ratio = v / scale if abs(v) <= scale else copysign(1.0, v)
-        angle = asin(ratio)
-        value, by_command, by_ratio = (float(spline.ev(at, angle, *order)) for order in ((0, 0), (1, 0), (0, 1)))
-        by_ratio *= min(1.0 / max(cos(angle), 1e-9), STEEPEST) * (abs(v) <= scale)
-        by_command -= by_ratio * ratio / at if scaled else 0.0
-        return value, by_ratio / scale, by_command * (y == at)
+        return float(spline.ev(at, asin(min(max(v / (top * (at if scaled else 1.0)), -1.0), 1.0))))
 
     return force
 
@@ -74,8 +64,7 @@ def force_map(case: MotorCase, limits: tuple[float, float], output: str, size: t
 class AveragedMotor(Struct, frozen=True, kw_only=True):
     """m dv/dt = F(v, y), dy/dt = (u - y)/tau_e: the wave follows the command u as the envelope of one resonance.
 
-    A tick is exact for a force linear in v and y, otherwise of order 2 in half of it (exponential Euler method of
-    Rosenbrock type: M. Hochbruck and A. Ostermann, Acta Numerica 19:209, 2010). State: position, speed, envelope.
+    State: position, speed, envelope.
     """
 
     mass: float  # kg
@@ -88,16 +77,14 @@ class AveragedMotor(Struct, frozen=True, kw_only=True):
 
     def advance(self, state: Array, command: float, seconds: float) -> Array:
         """The state after `seconds`."""
-        from scipy.linalg import expm
+        from scipy.integrate import solve_ivp
 
-        rates = np.zeros((4, 4))
-        rates[0, 1], rates[2, 2:] = 1.0, np.array([-1.0, command]) / self.time_constant
-        for _ in range(SUBSTEPS):
-            force, by_speed, by_envelope = self.force(*state[1:].tolist())
-            rest = force - by_speed * state[1] - by_envelope * state[2]
-            rates[1, 1:] = np.array([by_speed, by_envelope, rest]) / self.mass
-            state = np.asarray((expm(rates * (seconds / SUBSTEPS)) @ [*state, 1.0])[:3])
-        return state
+        def rates(_: float, now: Array) -> list[float]:
+            _, v, y = now.tolist()
+            return [v, self.force(v, y) / self.mass, (command - y) / self.time_constant]
+
+        solved = solve_ivp(rates, (0.0, seconds), state, "DOP853", rtol=1e-10, atol=1e-13)
+        return np.asarray(solved.y[:, -1])
 
     def read(self, state: Array) -> tuple[float, float]:
         """(position, speed)."""
@@ -107,22 +94,24 @@ class AveragedMotor(Struct, frozen=True, kw_only=True):
         """The steady command at a speed, m/s: the nearer limit where none within the limits has it."""
         from scipy.optimize import brentq
 
-        net = [self.force(speed, limit)[0] for limit in (lower, upper)]
+        net = [self.force(speed, limit) for limit in (lower, upper)]
         if net[0] * net[1] >= 0.0:
             return lower if abs(net[0]) <= abs(net[1]) else upper
-        return float(brentq(lambda y: self.force(speed, y)[0], lower, upper, xtol=1e-12 * (upper - lower)))
+        return float(brentq(lambda y: self.force(speed, y), lower, upper, xtol=1e-12 * (upper - lower)))
 
     def linearised(self, speed: float, command: float) -> "tuple[AveragedMotor, float, float]":
         """(linear motor, gain dv/du of the steady state, time constant m/|dF/dv|, s) about a speed and a command.
 
         Raises InputError where the force does not fall with the speed.
         """
-        _, by_speed, by_command = self.force(speed, command)
+        dv, dy = 1e-5 * max(abs(speed), 0.01), 1e-5 * max(abs(command), 1.0)  # central differences of a cubic spline
+        by_speed = (self.force(speed + dv, command) - self.force(speed - dv, command)) / (2.0 * dv)
+        by_command = (self.force(speed, command + dy) - self.force(speed, command - dy)) / (2.0 * dy)
         if by_speed >= 0.0:
             raise InputError(f"target = {speed!r} m/s: the force does not fall with the speed there, change it")
 
-        def force(v: float, y: float) -> tuple[float, float, float]:
-            return by_speed * (v - speed) + by_command * (y - command), by_speed, by_command
+        def force(v: float, y: float) -> float:
+            return by_speed * (v - speed) + by_command * (y - command)
 
         return replace(self, force=force), -by_command / by_speed, -self.mass / by_speed
 
@@ -153,7 +142,7 @@ class FullMotor(Struct, frozen=True, kw_only=True):
         return run
 
     def read(self, state: Motion) -> tuple[float, float]:
-        """(position, mean speed over the last drive period of the tick)."""
+        """(position, mean speed over the last drive period of the tick, of whole periods)."""
         times, travelled = state.times, state.travelled
         return float(travelled[-1]), float((travelled[-1] - travelled[-2]) / (times[-1] - times[-2]))
 

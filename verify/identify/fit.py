@@ -19,9 +19,10 @@ from verify.arrays import Array, Indices
 from verify.errors import InputError, near_name
 
 Values: TypeAlias = dict[str, float]
-REJECTED, HARD, ROUGH = 0.01, 0.1, 0.1
+REJECTED, HARD, WIDER, ROUGH = 0.01, 0.1, 3.0, 0.1
 """Probability below which residuals contradict the model; relative half width of an interval that needs a profile;
-relative noise that is too large to be estimated from the residuals, which are as large where the fit is wrong."""
+factor by which an interval by differences may be too short; relative noise that is too large to be estimated from the
+residuals, which are as large where the fit is wrong."""
 SINGULAR, INVOLVED = 1e5, 0.05
 """Condition of the Jacobian with columns of unit length, above which it is singular; least component of a singular
 direction, over its largest, in relative changes, that involves a parameter."""
@@ -211,7 +212,7 @@ def fit(
     sds = np.where(involved, np.inf, sigma * np.sqrt(inverse) / size)
     reach = np.minimum(quantile * sds, 1e3 * np.maximum(1.0, abs(theta)))
     profiles = bool((reach > HARD * scale).any()) if profiles is None else profiles
-    values, estimates = problem.values(theta), dict[str, Estimate]()
+    (rest, exact, curve), values, estimates = problem.at(theta), problem.values(theta), dict[str, Estimate]()
     ends = [problem.values(np.clip(theta + side * reach, problem.lower, problem.upper)) for side in (-1.0, 1.0)]
     for i, name in enumerate(names):
         one, interval = model.known[name], (float(ends[0][i]), float(ends[1][i]))
@@ -227,8 +228,12 @@ def fit(
             profile, reason = (left, right), f"its profile has no {' and no '.join(missing)} end" if missing else ""
         elif interval[0] <= one.lower or interval[1] >= one.upper or (logs[i] and quantile * sd >= values[i]):
             reason = "its interval includes a bound or zero"
+        if not reason and exact is None:  # a step of the curve, as where a slider comes to stick, is not its slope
+            sides = (theta + side * reach * (np.arange(p) == i) for side in (-1.0, 1.0))
+            rises = [(problem.at(np.clip(at, problem.lower, problem.upper))[0] ** 2).sum() - least for at in sides]
+            if min(rises) < (quantile * sigma / WIDER) ** 2:
+                reason = "the data change less over its interval than their derivative states"
         estimates[name] = Estimate(name, one.unit, float(values[i]), sd, interval, profile, reason)
-    rest, _, curve = problem.at(theta)
     ratio = least / noise**2 if noise else None
     fitness = None if ratio is None or not freedom else float(chdtrc(freedom, ratio))
     white = whiteness(rest.reshape(model.channels, -1)) if sigma > 1e-9 * abs(curve).max() else None  # else rounding

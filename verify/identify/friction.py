@@ -7,7 +7,7 @@ On a surface at rest, with g the normal force N over the mass, for v > 0:
 - Coulomb's law under a force r t: rest until t_b = mu_s N/r, then v = r (t^2 - t_b^2)/(2m) - mu g (t - t_b).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import copysign
 from typing import Any
 
@@ -75,10 +75,11 @@ def breakaway(slider: Slider, times: Array, force_rate: float) -> Model:
     return Model(known(slider, "mu", "mu_static"), predict, times, LABELS)
 
 
-def run(slider: Slider, times: Array, simulated: Callable[[Slider, float], Any]) -> Model:
+def run(slider: Slider, names: Sequence[str], times: Array, simulated: Callable[[Slider, float], Any]) -> Model:
     """Speed of a slider on the driven beam; `simulated` returns its motion until a time, s.
 
-    Derivatives are central differences: analytic ones would have to pass through the whole contact engine.
+    A slider without mu_static has it where it is in `names`. Derivatives are central differences: analytic ones would
+    have to pass through the whole contact engine.
     """
 
     def predict(values: Values) -> tuple[Array, None]:
@@ -89,5 +90,6 @@ def run(slider: Slider, times: Array, simulated: Callable[[Slider, float], Any])
             raise InputError(f"the slider leaves the beam after {motion.times[-1]:g} s: give shorter data")
         return np.interp(times, motion.times, motion.speed), None
 
-    names = ("mu", "mu_static") if slider.law == "coulomb" else ("mu", "slope")
-    return Model(known(slider, *names), predict, times, LABELS)
+    static = slider.mu_static is not None or "mu_static" in names  # otherwise mu alone is both
+    own = ("slope",) if slider.law != "coulomb" else ("mu_static",) if static else ()
+    return Model(known(slider, "mu", *own), predict, times, LABELS)

@@ -28,7 +28,6 @@ class Loop(NamedTuple):
     plants: dict[str, Any]
     command: float  # steady, before the step
     times: tuple[float, float]  # time constants of motor and envelope, s
-    overshoot: float  # of the linear plant in closed form, sampling as a time constant
     map_error: float  # of the interpolated force at the target, as a fraction of the speed
 
 
@@ -57,7 +56,7 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
     def loop(self, scene: Scene, cache: "SolutionCache") -> Loop:
         """The loop on a scene; gains by default of the magnitude optimum at the target. Raises InputError."""
         from verify.control import plants
-        from verify.control.controller import Controller, magnitude_optimum, step_overshoot
+        from verify.control.controller import Controller, magnitude_optimum
         from verify.motor.steady_state import MotorCase
 
         if self.of == "position" and self.output == "amplitude":
@@ -66,6 +65,8 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
             raise InputError(
                 "slider is missing: a controlled motor has one, add [slider] with mass and mu to the scene"
             )
+        if self.target == (self.speed if self.of == "speed" else 0.0):
+            raise InputError(f"target = {self.target!r}: the motor starts there, give another")
         opt.check_count(self.model, self.count)
         opt.check_forces(scene, "a controlled motor")
         damping = 0.5 * scene.beam.loss_factor if self.modal_damping is None else self.modal_damping
@@ -94,6 +95,8 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
             )
         linear, plant_gain, motor = averaged.linearised(speed, at)
         h = self.sample_time or 8.0 / hertz
+        if self.plant == "full" and abs(h * hertz - max(round(h * hertz), 1)) > 1e-6:
+            raise InputError(f"sample_time = {h!r}: give whole drive periods, over which the full plant has its speed")
         slow, fast = max(motor, envelope), min(motor, envelope) + (self.delay + 0.5) * h
         gain, integral_gain = magnitude_optimum(plant_gain, slow, fast)
         gain = gain if self.gain is None else self.gain
@@ -106,8 +109,7 @@ class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
         motors = {"linear": linear, "averaged": averaged, "full": full}
         direct = plants.mean_force(plants.commanded(point, at, self.output), speed)
         error = abs(direct * motor / (slider.mass * (speed or plant_gain * self.upper)))
-        closed = step_overshoot(gain * plant_gain, slow, fast)
-        return Loop(controller, motors, command_at(self.speed), (motor, envelope), closed, error)
+        return Loop(controller, motors, command_at(self.speed), (motor, envelope), error)
 
     def response(self, scene: Scene, cache: "SolutionCache", plant: str = "") -> "Response":
         """The response of a plant, by default `plant`, computed once. Raises InputError."""

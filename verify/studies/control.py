@@ -65,9 +65,8 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         }
         gains = [Column("law"), Column("K_p"), Column("K_i", "1/s"), si("sample time", "s")]
         gains += [si("motor time constant", "s"), si("envelope time constant", "s")]
-        gains += [percent("overshoot in closed form", ".6g")]
         own = loop.controller
-        row = ["PI", own.gain, own.integral_gain, own.sample_time, *loop.times, loop.overshoot]
+        row = ["PI", own.gain, own.integral_gain, own.sample_time, *loop.times]
         what = (self.of, "m" if self.of == "position" else "m/s")
         command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
         ends = last.times[[0, -1]]

@@ -114,7 +114,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             arguments = motion_arguments(scene, TimeOptions(model=self.model, count=self.count, time=until))
             return simulate(**arguments, slider=slider, samples=int(16.0 * until * arguments["frequency_hz"]) + 2)
 
-        return friction.run(scene.slider, x, simulated)
+        return friction.run(scene.slider, names, x, simulated)
 
     def data(self, scene: "Scene") -> "tuple[Model, Array]":
         """(model, y of the model as measured). Raises InputError."""
