@@ -104,16 +104,10 @@ def test_a_record_that_ends_before_the_bend_leaves_the_slope_open():
     assert without.estimates["slope"].reason == "its interval includes a bound or zero"
 
 
-@pytest.mark.parametrize(
-    ("model", "names", "noise"),
-    [
-        (friction.decay(SLIDER, TIMES[::4]), ("mu", "slope"), 1e-3),
-        (beams.frequencies(BEAM, (), MODES[:4]), ("youngs_modulus",), 2e-3),
-    ],
-)
-def test_coverage_of_the_intervals(model, names, noise):
-    for share in coverage(model, names, {}, noise, repeats=2000, seed=1).values():
-        assert 0.935 < share < 0.965
+def test_coverage_of_the_intervals():
+    """Of friction it is a gate of the scene identify-friction."""
+    model = beams.frequencies(BEAM, (), MODES[:4])
+    assert 0.935 < coverage(model, ("youngs_modulus",), {}, 2e-3, repeats=2000, seed=1)["youngs_modulus"] < 0.965
 
 
 def test_the_profile_of_a_linear_parameter_is_its_interval():
