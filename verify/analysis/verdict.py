@@ -80,9 +80,9 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
     """The verdict by the worst margin, by level, then by size over limit; of like ones the worst, without size none."""
-    worst_of = {(one.name, one.where): one for one in sorted(margins, key=_badness)}
+    worst_of = {(one.name, one.where): one for one in sorted(margins, key=badness)}
     sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
-    ordered = sorted(sized, key=_badness, reverse=True)
+    ordered = sorted(sized, key=badness, reverse=True)
     if any(one.remedy == LESS and one.level == "not trusted" for one in ordered):
         ordered = [msgspec.structs.replace(one, remedy=OPEN) if one.remedy == MORE else one for one in ordered]
     if not ordered:
@@ -122,6 +122,7 @@ def per_cent(ratio: float) -> str:
     return f"{float(f'{value:.2g}'):.0f} %" if 100.0 <= value < 1e5 else f"{value:.2g} %"
 
 
-def _badness(margin: Margin) -> tuple[int, bool, float]:
+def badness(margin: Margin) -> tuple[int, bool, float]:
+    """Key of an order with the worst margin last."""
     share = margin.size / margin.limit if margin.size == margin.size else float("inf")
     return LEVELS.index(margin.level), margin.leads and margin.level == "not trusted", share

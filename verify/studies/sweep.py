@@ -22,7 +22,7 @@ from msgspec import Meta
 from verify.analysis.margins import beam_margins, run_margins, sag_margins
 from verify.analysis.solution_cache import Bracket, Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
-from verify.analysis.verdict import Margin
+from verify.analysis.verdict import Margin, badness
 from verify.errors import InputError, near_name, shown
 from verify.files import exists, write_whole
 from verify.linear.registry import EXACT, MODELS
@@ -103,7 +103,8 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if file:
             write_whole(file, b"".join((header, *(lines[i] for i in sorted(lines)))).decode(), "--to")
         rows = [_row(lines[i]) for i in range(len(combinations))]
-        margins = [margin for row in rows for margin in row.pop("margins")]
+        found = sorted((margin for row in rows for margin in row.pop("margins")), key=badness)
+        margins = list({margin.name: margin for margin in found}.values())  # of each the worst combination's
         if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
             margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
         wanted, failed = _quantities(self.quantities), sum(row["reason"] is not None for row in rows)
