@@ -222,6 +222,12 @@ def test_sweep_of_a_quantity(data, bare):
     assert [a / b for a, b in zip(short, long, strict=True)] == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
+def test_a_sweep_without_any_value_is_bad_input(call, bare):
+    status, out, err = call("sweep bare.toml mode.frequency model=fem mode=40 count=4,5")
+    assert (status, "2 combinations, 2 without a value" in out) == (2, True)
+    assert "no combination has a value, the first one because mode = 40" in " ".join(err.split())
+
+
 def test_schema_of_sections(call, data):
     assert "beam.spring" in call("schema")[1]
     assert "stiffness" in call("schema beam.spring")[1]

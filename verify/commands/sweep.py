@@ -59,3 +59,5 @@ def sweep(
         result = study.run(loaded, SolutionCache(loaded.beam), step, Path(file) if file else None)
     shared.show(result, **formats)
     shared.save_charts(result, charts)
+    if all(reasons := [row["reason"] for row in result.data["rows"]]):
+        raise InputError(f"no combination has a value, the first one because {reasons[0]}")
