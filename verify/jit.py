@@ -17,7 +17,10 @@ from numba import config, njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_ENGINE = ("layout", "kinematics", "friction", "contact_solver", "integrator", "impact")
+_ENGINE = (
+    *("layout", "kinematics", "friction", "point_forces", "one_way_friction", "active_sets", "contact_solver"),
+    *("integrator", "impact"),
+)
 _NAMES = (
     *("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py"),
     *(f"dynamics/{name}.py" for name in _ENGINE),

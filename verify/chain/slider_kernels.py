@@ -13,7 +13,7 @@ from verify.chain import rigid_links
 from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
-from verify.dynamics.contact_solver import TRANSVERSE, product, respond, solve
+from verify.dynamics.contact_solver import solve
 from verify.dynamics.integrator import add_sums, move, sample, write_events
 from verify.dynamics.kinematics import (
     END,
@@ -27,6 +27,7 @@ from verify.dynamics.kinematics import (
     set_mean_rates,
     shape_of,
 )
+from verify.dynamics.point_forces import TRANSVERSE, product, respond
 from verify.jit import inline, jit
 
 CORRECTIONS = 20  # largest number of marches of a step before it is not converged

@@ -19,7 +19,7 @@ from verify.chain.motion import from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
 from verify.dynamics import layout as lay
-from verify.dynamics.initial_state import PASSES, set_down
+from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equilibrium, set_down
 from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
 from verify.dynamics.request import request_of
 from verify.dynamics.result import END, Motion
@@ -116,7 +116,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
         z = super()._initial(contacts, loaded)
         if loaded and contacts.normal_two_way:
-            rises = self._rises(contacts)
+            rises = self._rises(self._rest(contacts))
             ground: Any = SimpleNamespace(
                 edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
                 rates_at_start=lambda z: 0.0 * rises,
@@ -124,27 +124,56 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             set_down(contacts, ground, z)
         return z
 
-    def _rises(self, contacts: Contacts) -> Array:
-        """Transverse steps of the links in equilibrium, (N,), m."""
-        return np.asarray(self.system.lengths * np.sin(np.cumsum(self._static(contacts).angles)))
-
-    def _static(self, contacts: Contacts) -> ChainState:
-        """Equilibrium of the chain under the load of feet, which the points on each face share equally."""
-        system, p, state = self.system, contacts.points, at_rest(self.system)
+    def _rest(self, contacts: Contacts) -> ChainState:
+        """Equilibrium of the chain with the sliders."""
+        state, p = at_rest(self.system), contacts.points
         if not contacts.normal_two_way:
             return state
-        side, x = p[:, lay.FACE] * p[:, lay.IMAGE], contacts.start + p[:, lay.OFFSET]
-        group = 2 * contacts.indices[:, lay.OF_FOOT] + (p[:, lay.FACE] > 0.0)
-        total = np.bincount(group, p[:, lay.STIFF] * np.maximum(contacts.contacts[:, lay.DEPTH], 0.0))[group]
-        push = total * p[:, lay.WEIGHT] * side / np.bincount(group)[group]
+
+        def surface(normal: Array, friction: Array) -> tuple[Array, Array]:
+            nonlocal state
+            state = self._static(contacts, normal, friction, state)
+            rises = self._rises(state)
+            at = self._material(rises, contacts.start + p[:, lay.OFFSET], p[:, lay.LEVER])
+            return rises @ self.line(at), rises @ self.line(at, 1)
+
+        assert self.basis is not None
+        equilibrium(contacts, surface, compliance_of(self.basis, contacts))
+        return state
+
+    def _material(self, rises: Array, x: Array, lever: Array) -> Array:
+        """Material points under the positions x, m."""
+        return np.asarray(x + lever * (rises @ self.line(x, 1)))
+
+    def _rises(self, state: ChainState) -> Array:
+        """Transverse steps of the links, (N,), m."""
+        return np.asarray(self.system.lengths * np.sin(np.cumsum(state.angles)))
+
+    def _static(self, contacts: Contacts, normal: Array, friction: Array, state: ChainState) -> ChainState:
+        """Equilibrium of the chain under contact forces at its points, near a state.
+
+        Dead loads at the far joints have the virtual power of the forces, as in `slider_kernels.load_joints`.
+        """
+        system, p = self.system, contacts.points
+        x, lever = contacts.start + p[:, lay.OFFSET], p[:, lay.LEVER]
+        across = p[:, lay.WEIGHT] * p[:, lay.FACE] * p[:, lay.IMAGE] * normal
+        along = p[:, lay.WEIGHT] * friction
         for _ in range(PASSES):
-            lean, rises = 0.0 * x, system.lengths * np.sin(np.cumsum(state.angles))
-            for _ in range(PASSES):
-                lean = p[:, lay.LEVER] * (rises @ self.line(x + lean, 1))
-            beyond = (self.line(x + lean) + lean * self.line(x, 1)) @ push
-            across, ends = np.diff(beyond, append=0.0), system.lengths
-            loads = [LinkLoad(link=j + 1, at=float(ends[j]), force=(0.0, float(f))) for j, f in enumerate(across)]
-            state = solve_static(changed(system, loads=(*system.loads, *loads)), state)
+            rises = self._rises(state)
+            at = self._material(rises, x, lever)
+            slope, flat, tilted = rises @ self.line(at, 1), self.line(at), self.line(at, 1)
+            lifted = flat + lever * slope * self.line(x, 1)
+            dragged = (slope * flat - lever * tilted) / np.hypot(1.0, slope)
+            before = np.clip((x - system.nodes[:-1, None]) / system.lengths[:, None], 0.0, 1.0)
+            sums = before @ along, lifted @ across + dragged @ along
+            steps = np.diff(sums, append=0.0, axis=1).T
+            loads = [
+                LinkLoad(link=j + 1, at=float(system.lengths[j]), force=(float(fx), float(fy)))
+                for j, (fx, fy) in enumerate(steps)
+            ]
+            last, state = rises, solve_static(changed(system, loads=(*system.loads, *loads)), state)
+            if abs(self._rises(state) - last).max() <= SETTLED * abs(last).max():
+                break
         return state
 
     def _states(self, steps: Steps, contacts: Contacts, numbers: Array, progress: Progress) -> tuple[Array, float]:
@@ -154,7 +183,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         system = self.system
         if contacts.two_way:
             states = np.zeros((3, 2 * system.n_links + 2))
-            states[0] = begin(system, self._static(contacts), numbers)
+            states[0] = begin(system, self._rest(contacts), numbers)
             limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
             return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
         times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
@@ -198,7 +227,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         )  # fmt: skip
         contacts.contacts[:, lay.WAS_DEPTH] = contacts.contacts[:, lay.DEPTH]
         run.sample_first()
-        deflection = (places[:, :count] @ self._rises(contacts))[None]
+        deflection = (places[:, :count] @ self._rises(self._rest(contacts)))[None]
         run.set_up_s, began = thread_time() - began, thread_time()
         reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
         while reason == lay.DONE and run.tally[lay.STEP] < steps.n:

@@ -230,6 +230,13 @@ def line_force(
 
 
 @inline
+def stretching_time(dt: float, touch: Array) -> float:
+    """Time for which the mean slip has stretched the spring at mid-step, s: half the step, or since the landing."""
+    depth, was = touch[lay.DEPTH], touch[lay.WAS_DEPTH]
+    return float(0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was))
+
+
+@inline
 def elastic_force(
     dt: float, slip: float, ease: float, limit: float, kinetic: float, steepness: float, point: Array, touch: Array
 ) -> tuple[float, float, float]:
@@ -238,15 +245,13 @@ def elastic_force(
     `slip` is that of the step without this force, `ease` its gain by one. Coulomb: the trial force up to the limit.
     Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
     """
-    depth, was = touch[lay.DEPTH], touch[lay.WAS_DEPTH]
-    since = 0.5 * dt if was > 0.0 or depth <= 0.0 else dt * depth / (depth - was)
-    spring = point[lay.TANGENTIAL] * since
+    spring = point[lay.TANGENTIAL] * stretching_time(dt, touch)
     full = 1.0 + 0.5 * spring * ease
     trial, stiffness = (point[lay.TANGENTIAL] * touch[lay.STRETCH] - spring * slip) / full, spring / full
     if kinetic <= 0.0:
         return 0.0, 0.0, spring
     if steepness == 0.0:
-        return (trial, 1.0, spring) if abs(trial) < limit else (float(np.sign(trial) * kinetic), 0.0, spring)
+        return (trial, 1.0, spring) if abs(trial) < limit else (float(np.sign(trial) * limit), 0.0, spring)
     size, sign = abs(trial), 1.0 if trial > 0.0 else -1.0
     low, high = max(size - kinetic, 0.0) / stiffness, size / stiffness  # tanh lies between 0 and 1
     slipped = low

@@ -1,8 +1,10 @@
-"""Initial states of beam and sliders: static deflection, steady state with attached mass, feet in equilibrium."""
+"""Initial states of beam and sliders: static equilibrium of beam and feet, steady state with attached mass."""
+
+from collections.abc import Callable
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray, Indices
+from verify.arrays import Array, BoolArray, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics.excitation import RESONANCE
 from verify.dynamics.linear_system import Stage
@@ -10,47 +12,140 @@ from verify.dynamics.stepping import Contacts
 from verify.errors import InputError
 from verify.linear.time_basis import Ratio, TimeBasis
 
-PASSES = 4
-"""Fixed-point iterations for the material point under a contact point; each reduces the error by (h/2) w''."""
+PASSES = 40
+"""Most iterations of an equilibrium. The compliance of the unloaded beam is that of the loaded one up to the rotation
+of its surface: an iteration reduces the error by a factor of 10 to 1000."""
+SETTLED = 1e-14
+"""Change of the surface, over its largest displacement, at which an equilibrium is at its rounding."""
+
+
+def equilibrium(contacts: Contacts, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:
+    """Bring sliders and surface to static equilibrium, in which the points of a foot carry it without a moment.
+
+    `surface` gives (level, slope) of the material under every point, (points,), m, under normal forces and friction;
+    `compliance` (points, points), m/N, is its approximate derivative: the decrease of a depth by a unit normal force.
+    Springs press but do not pull. Sets the pitches of the feet; returns the depth, (feet,), m, that a foot between two
+    beams gains by its preload. Raises InputError for a foot without load.
+    """
+    p = contacts.points
+    normal, place = _shares(contacts), np.zeros((len(contacts.feet), 3))
+    friction, level = 0.0 * normal, np.full(len(normal), np.inf)
+    between = _between(contacts)
+    moves = np.transpose([~between, ~between & (contacts.feet[:, lay.INVERSE_INERTIA] > 0.0), between])
+    for _ in range(PASSES):
+        before, (level, slope) = level, surface(normal, friction)
+        friction = _holding(contacts, normal, slope)
+        if len(contacts.feet):
+            depth = p[:, lay.INSET] + p[:, lay.FACE] * p[:, lay.IMAGE] * level
+            normal, place = _carried(contacts, depth + compliance @ normal, compliance, moves)
+            contacts.feet[:, lay.PITCH] = place[:, 1]
+        if abs(level - before).max() <= SETTLED * abs(level).max():
+            break
+    return np.asarray(place[:, 2])
+
+
+def _shares(contacts: Contacts) -> Array:
+    """Load of every point, N, where the points of a foot share its load equally."""
+    if not len(contacts.feet):
+        return np.array(contacts.points[:, lay.LOAD])
+    p, foot = contacts.points, contacts.indices[:, lay.OF_FOOT]
+    preload = np.bincount(foot, p[:, lay.INSET] * p[:, lay.STIFF])  # between two beams
+    return np.asarray(((abs(contacts.feet[:, lay.FOOT_LOAD]) + preload) / np.bincount(foot))[foot])
+
+
+def _between(contacts: Contacts) -> BoolArray:
+    """Which feet are between two beams that respond, (feet,): by symmetry they stay in the middle."""
+    foot, weights = contacts.indices[:, lay.OF_FOOT], contacts.points[:, lay.WEIGHT]
+    halved = np.bincount(foot, weights < 1.0, len(contacts.feet))[: len(contacts.feet)] > 0.0
+    return np.asarray(halved & contacts.normal_two_way)
+
+
+def _holding(contacts: Contacts, normal: Array, slope: Array) -> Array:
+    """Friction on sliders at rest, N: what holds them, or kinetic beyond the static limit; 0 at a prescribed speed."""
+    slider = contacts.indices[:, lay.OF_SLIDER]
+    rows, total = contacts.sliders, np.bincount(slider, normal)
+    pull = rows[:, lay.EXTERNAL_FORCE].copy()
+    if contacts.following:
+        downhill = contacts.gravity * contacts.points[:, lay.INERTIA] * slope
+        pull -= np.bincount(slider, downhill)
+    pull[(rows[:, lay.INVERSE_MASS] == 0.0) | (rows[:, lay.V] != 0.0)] = 0.0
+    static, kinetic = rows[:, lay.MU_STATIC] * total, rows[:, lay.MU] * total
+    held = np.where(abs(pull) <= static, pull, np.clip(pull, -kinetic, kinetic))
+    return np.asarray(-(held / np.where(total > 0.0, total, 1.0))[slider] * normal)
+
+
+def _carried(contacts: Contacts, depth: Array, compliance: Array, moves: Array) -> tuple[Array, Array]:
+    """(normal forces, places of the feet) on a linear surface that is at `depth` without them and feet at height 0.
+
+    The depth of a point is depth - compliance N - B y with the places y of the feet, and N/k in contact; B^T N are the
+    loads of the feet. `moves` (feet, 3) are the coordinates of the places that balance their loads. The set of points
+    in contact is corrected until no point pulls and none without force is deep.
+    """
+    p, feet, foot = contacts.points, contacts.feet, contacts.indices[:, lay.OF_FOOT]
+    n, m = len(p), len(feet)
+    by_place, loads, springs = np.zeros((n, m, 3)), np.zeros((m, 3)), np.zeros((m, 3))
+    by_place[np.arange(n), foot] = np.transpose([p[:, lay.FACE], p[:, lay.FACE] * p[:, lay.ARM], -np.ones(n)])
+    loads[:, 0], springs[:, 0] = -feet[:, lay.FOOT_LOAD], feet[:, lay.SPRING_RATE]
+    loads[:, 2] = -np.bincount(foot, p[:, lay.INSET] * p[:, lay.STIFF])
+    moved = moves.ravel()
+    b, load, rate = by_place.reshape(n, -1)[:, moved], loads.ravel()[moved], springs.ravel()[moved]
+    touching, normal, place = np.ones(n, dtype=bool), np.zeros(n), np.zeros(3 * m)
+    for _ in range(4 * n + 4):
+        if (np.bincount(foot, touching) == 0.0).any():
+            number = int(np.bincount(foot, touching).argmin()) + 1
+            raise InputError(f"slider.preload leaves foot {number} without load or off the beam: raise it")
+        inner = np.diag(1.0 / p[:, lay.STIFF]) + compliance
+        inner, sides = inner[np.ix_(touching, touching)], b[touching]
+        matrix = np.block([[inner, sides], [sides.T, -np.diag(rate)]])
+        # a foot on a single point may have any pitch: the least is taken
+        found = np.linalg.lstsq(matrix, np.concatenate([depth[touching], load]), rcond=None)[0]
+        normal[:], normal[touching], place[moved] = 0.0, found[: touching.sum()], found[touching.sum() :]
+        left = depth - compliance @ normal - b @ place[moved]
+        after = np.where(touching, normal > 0.0, left > 1e-12 * abs(depth).max())
+        if (after == touching).all():
+            break
+        touching = after
+    return normal, place.reshape(m, 3)
 
 
 def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
     """Modal amplitudes of a beam in static equilibrium under the sliders, (n,), sqrt(kg) m.
 
-    A load acts at the material point x + (h/2) w', normal to the surface, and therefore has the moment (h/2) w' per
-    unit load on the section. The points of a foot share its load equally.
+    A normal force acts at the material point x + (h/2) w', square to the surface, and so has the moment (h/2) w' per
+    unit force on the section. Between two beams the depth is increased until each carries the preload.
     """
     p, x = contacts.points, contacts.start + contacts.points[:, lay.OFFSET]
-    foot = contacts.indices[:, lay.OF_FOOT] if len(contacts.feet) else np.arange(len(p))
-    share = (foot[:, None] == np.arange(foot.max() + 1)) * p[:, [lay.WEIGHT]]
-    share = share / share.sum(axis=0)  # a foot between two mirrored beams loads each with half
-    apart = np.where(p[:, lay.IMAGE] > 0.0, p[:, lay.INSET] * p[:, lay.STIFF], 0.0)
-    still, slopes = np.zeros(len(basis.omegas)), basis.shapes(x, 1)
-    for _ in range(PASSES):
-        at = _material(basis, still, x, p[:, lay.LEVER])
-        shapes = basis.shapes(at, 0) + p[:, lay.LEVER] * (still @ basis.shapes(at, 1)) * slopes
-        loaded = shapes @ share / basis.omegas[:, None]
-        still = shapes @ (share @ _loads(contacts, foot, loaded.T @ loaded) - apart) / basis.omegas**2
-    return np.asarray(still)
+    side, lever, slopes = p[:, lay.WEIGHT], p[:, lay.LEVER], basis.shapes(x, 1)
+    if len(contacts.feet):
+        side = side * p[:, lay.FACE] * p[:, lay.IMAGE]
+
+    def shapes(q: Array) -> tuple[Array, Array, Array]:
+        """Generalised displacements of all points, normal and tangential, (n, points), and slopes, (points,)."""
+        at = np.clip(x + lever * (q @ slopes), 0.0, basis.beam.length)
+        flat, turned = basis.shapes(at, 0), basis.shapes(at, 1)
+        slope = q @ turned
+        return flat + lever * slope * slopes, (slope * flat - lever * turned) / np.hypot(1.0, slope), slope
+
+    q = np.zeros(len(basis.omegas))
+
+    def surface(normal: Array, friction: Array) -> tuple[Array, Array]:
+        nonlocal q
+        across, along, slope = shapes(q)
+        q = -(across @ (side * normal) + along @ (p[:, lay.WEIGHT] * friction)) / basis.omegas**2
+        at = np.clip(x + lever * (q @ slopes), 0.0, basis.beam.length)
+        return q @ basis.shapes(at, 0), slope
+
+    gained = equilibrium(contacts, surface, compliance_of(basis, contacts))
+    if len(contacts.feet):
+        p[:, lay.INSET] += gained[contacts.indices[:, lay.OF_FOOT]]
+    return np.asarray(q)
 
 
-def _material(basis: TimeBasis, q: Array, x: Array, lever: Array) -> Array:
-    """Material points at the positions x, m."""
-    return np.asarray(np.clip(x + lever * (q @ basis.shapes(x, 1)), 0.0, basis.beam.length))
-
-
-def _loads(contacts: Contacts, foot: Indices, compliance: Array) -> Array:
-    """Static force along z on each foot, N, or minus the load of each point without foot.
-
-    Preload springs relax with the deformation of the beam (`compliance` (feet, feet), m/N) and of the contact.
-    """
-    if not len(contacts.feet):
-        return -contacts.points[:, lay.LOAD]
-    press, spring = contacts.feet[:, lay.FOOT_LOAD], contacts.feet[:, lay.SPRING_RATE]
-    if not spring.any():
-        return press
-    deformed = compliance + np.diag(1.0 / np.bincount(foot, contacts.points[:, lay.STIFF]))
-    return np.asarray(np.linalg.solve(np.eye(len(press)) + spring[:, None] * deformed, press))
+def compliance_of(basis: TimeBasis, contacts: Contacts) -> Array:
+    """Decrease of the depth of every point by unit normal forces on a straight beam, (points, points), m/N."""
+    p = contacts.points
+    shapes = basis.shapes(contacts.start + p[:, lay.OFFSET], 0) * p[:, lay.FACE] * p[:, lay.IMAGE]
+    return np.asarray((shapes.T / basis.omegas**2) @ (shapes * p[:, lay.WEIGHT]))
 
 
 def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping: Ratio) -> ComplexArray:
@@ -70,56 +165,37 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
 
 
 def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
-    """Set sliders level in equilibrium on the surface of free rows z: depths, heights of feet, normal velocities.
+    """Set sliders in equilibrium on the surface of free rows z: places of feet, depths, friction, normal velocities.
 
     Raises InputError for a foot without load.
     """
-    p, state, at = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
-    x, lever, factors, rates = at, p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
-    for _ in range(PASSES):
-        at = np.clip(x + lever * (factors @ stage.columns(at, 1)), 0.0, stage.edges[-1])
+    p, state, x = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
+    lever, factors, rates = p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
+    at = np.clip(x + lever * (factors @ stage.columns(x, 1)), 0.0, stage.edges[-1])  # the material under a point
     level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
     rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
     along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
     along = along - slope * rise if contacts.following else along
     along = along * contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.FREE]
     climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
+    foot = contacts.indices[:, lay.OF_FOOT]
+    if contacts.restitution is not None:  # a rigid point moves with the surface from the start
+        contacts.feet[:, lay.HEIGHT], contacts.feet[:, lay.CLIMB] = level, climb
+        return
     if not len(contacts.feet):
         state[:, lay.RISE_RATE] = climb
-        return
-    foot, rigid = contacts.indices[:, lay.OF_FOOT], contacts.restitution is not None
-    for number, row in enumerate(contacts.feet):
-        own = foot == number
-        row[lay.HEIGHT] = float(level[own][0]) if rigid else _rest_height(number, p[own], level[own], row)
-    if rigid:  # a rigid point moves with the surface from the start
-        contacts.feet[:, lay.CLIMB] = climb
-    height = contacts.feet[foot, lay.HEIGHT]
-    state[:, lay.DEPTH] = p[:, lay.INSET] + p[:, lay.FACE] * (p[:, lay.IMAGE] * level - height)
-
-
-def _rest_height(number: int, points: Array, level: Array, foot: Array) -> float:
-    """Height at which the springs of a level foot carry its load over these levels, m. Raises InputError."""
-    from scipy.optimize import brentq
-
-    face, stiff, press = points[:, lay.FACE], points[:, lay.STIFF], float(foot[lay.FOOT_LOAD])
-    depth = points[:, lay.INSET] + face * points[:, lay.IMAGE] * level
-
-    def force(z: float) -> float:
-        return float((face * stiff * np.maximum(depth - face * z, 0.0)).sum() + press - foot[lay.SPRING_RATE] * z)
-
-    total = float(stiff.sum())
-    wide = 2.0 * float(np.abs(level).max()) + 2.0 * (abs(press) + total * points[:, lay.INSET].max()) / total + 1e-12
-    if not force(-wide) > 0.0 > force(wide):
-        raise InputError(f"slider.preload leaves foot {number + 1} without load or off the beam: raise it")
-    return float(brentq(force, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
-
-
-def deepen_between_beams(basis: TimeBasis, contacts: Contacts, still: Array) -> None:
-    """Increase the depth of a foot between two beams by the mean deflection of the beams under its preload."""
-    p = contacts.points
-    x = contacts.start + p[:, lay.OFFSET]
-    bent = still @ basis.shapes(_material(basis, still, x, p[:, lay.LEVER]), 0)
-    for number in range(len(contacts.feet)):
-        between = (contacts.indices[:, lay.OF_FOOT] == number) & (p[:, lay.WEIGHT] < 1.0)
-        if between.any():
-            p[between, lay.INSET] -= bent[between].mean()
+        normal = p[:, lay.LOAD]
+    else:
+        level = p[:, lay.IMAGE] * level - p[:, lay.ARM] * contacts.feet[foot, lay.PITCH]
+        depth = p[:, lay.INSET] + p[:, lay.FACE] * level
+        moves = np.zeros((len(contacts.feet), 3), dtype=bool)
+        moves[:, 0] = ~_between(contacts)
+        normal, place = _carried(contacts, depth, np.zeros((len(p), len(p))), moves)
+        contacts.feet[:, lay.HEIGHT] = place[:, 0]
+        state[:, lay.DEPTH] = depth - p[:, lay.FACE] * contacts.feet[foot, lay.HEIGHT]
+    state[:, lay.FRICTION] = _holding(contacts, normal, slope)
+    slider = contacts.sliders[contacts.indices[:, lay.OF_SLIDER]]
+    above = abs(state[:, lay.FRICTION]) > slider[:, lay.MU] * normal * (1.0 + 1e-12)  # only a point that sticks has it
+    state[above & (slider[:, lay.STEEPNESS] == 0.0), lay.STUCK] = 1.0
+    elastic = p[:, lay.TANGENTIAL] > 0.0
+    state[elastic, lay.STRETCH] = state[elastic, lay.FRICTION] / p[elastic, lay.TANGENTIAL]

@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
-from verify.dynamics.contact_solver import TRANSVERSE, apply_forces, product, set_end_couplings, solve
+from verify.dynamics.contact_solver import apply_forces, solve
 from verify.dynamics.friction import tanh_change
 from verify.dynamics.kinematics import (
     END,
@@ -22,6 +22,7 @@ from verify.dynamics.kinematics import (
     set_shapes,
     shift_factors,
 )
+from verify.dynamics.point_forces import TRANSVERSE, product, set_end_couplings
 from verify.jit import FAST, inline, jit
 
 POWERS = (1.0 / 6.0, 4.0 / 6.0, 3.0 / 6.0, -2.0 / 6.0)

@@ -29,11 +29,11 @@ OFFSET, ARM, STIFF, DASHPOT, TANGENTIAL, FACE, IMAGE, INSET, WEIGHT, LOAD, INERT
 damping and tangential stiffness (0: rigid); +1 on the upper face, -1 on the lower one; +1, or -1 on the mirror image of
 the beam; depth in the straight beam at foot height 0, m; 1/2 of a point between two beams, else 1; normal load of a
 point without foot, N, and its mass across the beam, kg; half the thickness h/2 times face times image, m."""
-CONTACT = 29
+CONTACT = 30
 (
     NORMAL, FRICTION, STUCK, DEPTH, STRETCH, RISE_RATE, SURFACE, BEFORE, LOSS, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
     START, MEAN, END, RISE, WAS_DEPTH, WAS_STUCK, SLIP, OWN, TILT_END, DRIFT_END,
-    AT_END, ABOVE_END, SPEED_END, WAS_FRICTION,
+    AT_END, ABOVE_END, SPEED_END, WAS_FRICTION, GRIP,
 ) = range(CONTACT)  # fmt: skip
 """Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, RISE_RATE, the
 speed of the point across the beam, m/s. State: the first nine. NORMAL and FRICTION are means over the step, FRICTION
@@ -43,7 +43,7 @@ so far. The others are of one step: material under the point and the point itsel
 under it, rate at which the gap closes, share of the rise by slopes; speed of the surface at the start, in the mean and
 at the end without contact forces, its gain; last depth and sticking; mean slip v - s; own response; acceleration and
 drift of "following" at the end without forces; material under the point, point and its speed along at the end; last
-friction."""
+friction; which limit of friction holds, `GRIP` of `contact_solver`."""
 OF_SLIDER, OF_FOOT, PIECE = range(3)
 """Indices (n_points, 3): slider, foot (0 without feet) and piece of the beam of every point."""
 

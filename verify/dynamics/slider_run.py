@@ -13,7 +13,7 @@ from verify.arrays import Array, ComplexArray
 from verify.dynamics import layout as lay
 from verify.dynamics import step_control, validity
 from verify.dynamics.contact_assembly import assemble, contact_rate
-from verify.dynamics.initial_state import deepen_between_beams, set_down, static_deflection, steady_with_mass
+from verify.dynamics.initial_state import set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
 from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
@@ -108,7 +108,6 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
         if basis and loaded and contacts.normal_two_way:
             still = static_deflection(basis, contacts)
-            deepen_between_beams(basis, contacts, still)
             z = stage.rows.of_state(still, 0.0 * still)
             if stage.forced is None and contacts.law == lay.BILATERAL:
                 z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
