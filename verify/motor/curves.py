@@ -92,7 +92,7 @@ class TimeConstant(Struct, frozen=True, kw_only=True):
     error: float
     """Of `time`, s."""
     peak: float
-    """The mean speed farthest in the direction of the change, m/s."""
+    """The mean speed farthest beyond the final or the initial one, m/s."""
     peak_time: float
     """To 1 - 1/e of the change to `peak`, s."""
     missing: Missing | None
@@ -133,11 +133,13 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
         if not span:
             return TimeConstant(time=np.inf, error=np.inf, peak=target, peak_time=np.inf, missing="start")
         change = (self.speeds - self.start_speed) / span
-        steady, highest = change[-self.last :], float(change.max())
+        steady, ends = change[-self.last :], (float(change.min()), float(change.max()))
         band = LEVEL * uncertain / abs(span) + float(steady.std())
-        levels = LEVEL, LEVEL * highest, LEVEL - band, LEVEL + band
-        time, peak_time, early, late = (_first(change, self.times, level) for level in levels)
-        error, excess = np.inf, (highest - max(1.0, float(steady.max()))) * abs(span)
+        time, early, late = (_first(change, self.times, LEVEL + one) for one in (0.0, -band, band))
+        below, above = min(0.0, float(steady.min())) - ends[0], ends[1] - max(1.0, float(steady.max()))
+        peak, error = ends[below <= max(above, 0.0)], np.inf
+        peak_time = _first(np.sign(peak) * change, self.times, LEVEL * abs(peak))
+        excess = max(below, above) * abs(span)
         if time < np.inf:
             late = max([late, *self.times[change < LEVEL][-1:].tolist()])
             error = max(time - early, late - time) + period**2 / (24.0 * time)
@@ -150,7 +152,7 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
             missing = "resolution"
         elif error >= time:
             missing = "start"
-        peak = self.start_speed + highest * span
+        peak = self.start_speed + peak * span
         return TimeConstant(time=time, error=error, peak=peak, peak_time=peak_time, missing=missing)
 
 
@@ -166,7 +168,7 @@ def _first(change: Array, times: Array, level: float) -> float:
 def transient(case: MotorCase, periods: int, before: Transient | None = None) -> Transient:
     """The free slider over `periods` drive periods, from `slider.speed` or from the end of another run.
 
-    Raises InputError where the slider leaves the beam in the first period.
+    Raises InputError where the slider leaves the beam in the first period, or for fewer than 16 means.
     """
     fine = max(FINE, ceil(case.soft_start_periods))
     fine = periods if periods < 2 * fine else fine
@@ -182,6 +184,8 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
         run = replace(case, soft_start_periods=0.0).run(rest, rest + 1, run)
         times = np.append(times, run.times[1:] - begin - 0.5 * case.period)
         speeds = np.append(speeds, np.diff(run.travelled) / np.diff(run.times))
+    if len(speeds) < BATCHES:
+        raise InputError(f"periods = {periods!r}: {REASONS['free speed' if run.statistics.finished else 'left']}")
     last = max(len(run.times) // (4 * BATCHES), 1) * BATCHES
     batches = speeds[-last:].reshape(BATCHES, -1).mean(axis=1)
     speed, load = float(batches.mean()), slider.normal_force

@@ -1,6 +1,7 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, on every model."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import copysign, inf
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
+UNEVEN = 1.25
+"""Standing-wave ratio from which the crest speed, and with it that of a slider on short feet, varies along the beam by
+more than a tenth about its mean."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
 SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
@@ -117,7 +121,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             fields.append(
                 self._field(case, like, cache, lambda what: progress(f"{next(number)} of {self.steps}: {what}"))
             )
-        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache) + reduction_margins(scene)
+        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
+        margins += path_margins(first.case.model, first.case.count, scene, cache) + reduction_margins(scene)
         valid = verdict_of(margins).level != "not trusted"
         summary = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
         summary += ", " + _with_error("stall force", still.means.force, still.errors.force, "N")
@@ -178,7 +183,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def _with_error(name: str, value: float, error: float, symbol: str) -> str:
-    """'Free speed -26.68 ± 0.02 mm/s', with a remark where the value lies within its error."""
+    """'Free speed -26.68 ± 0.02 mm/s', to the digits that hold, with a remark where the value lies within its error."""
     unit = unit_of(max(abs(value), error), symbol)
     text = f"{name} {with_error(unit.factor * value, unit.factor * error, '+')} {unit.name}"
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
@@ -204,6 +209,19 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
         free = "free vibrations of the beam, which decay by contact alone, may be left out"
         margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, condition=free))
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
+
+
+def path_margins(model: str, count: int | None, scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
+    """Condition of the speed of a slider that moves along a partly standing wave."""
+    from verify.analysis.verdict import Margin
+    from verify.quantities.base import evaluate
+
+    with suppress(InputError):  # no two waves in the window
+        ratio: Any = evaluate("wave.standing_wave_ratio", {"model": model, "count": count}, scene, cache)
+        path = f"the speed along the path of the run is meant (standing-wave ratio {ratio:.3g})"
+        name = "variation of the speed along the beam"
+        return [Margin(name=name, size=ratio, fine=UNEVEN, limit=inf, condition=path, is_error=False)]
+    return []
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
