@@ -193,6 +193,9 @@ def test_a_light_motor_starts_and_stops_faster_than_means_over_a_drive_period_re
         speeds.append(free.speed)
     assert missing <= {"resolution", "overshoot"}
     assert speeds == pytest.approx([speeds[0]] * 6, rel=4e-3)
+    scene = load_scene("preloaded-motor", ("slider.mass=0.0005",))
+    with pytest.raises(InputError, match=r"slider.mass = 0.0005 kg.*117"):  # half a period, µs
+        evaluate("motor.start_time", {"model": "analytic", "periods": 400}, scene, SolutionCache(scene.beam))
 
 
 WANDERING = {

@@ -50,7 +50,8 @@ REASONS = {
     "standing-wave ratio along which the slider moves",
     "overshoot": "the mean speed overshoots and has no time constant, lower the standing-wave ratio along which the "
     "slider moves, or raise slider.mass",
-    "resolution": "the time constant is below a drive period, means over which resolve half of it, raise slider.mass",
+    "resolution": "the time constant is below a drive period, half of which is the least that means over a period "
+    "resolve, raise slider.mass",
     "start": "the change of speed in the free run is within its error, choose another slider.speed",
     "stop": "the speed does not fall to 1/e after the drive is switched off, raise periods",
     "reversal": "the speed does not change after the phases are reversed, raise periods",
