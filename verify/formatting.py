@@ -1,7 +1,7 @@
 """Numbers and names as text: SI prefixes, rounding residues, names of theories."""
 
 from collections.abc import Iterable
-from math import isfinite
+from math import floor, isfinite, log10
 from typing import NamedTuple
 
 from verify.errors import written
@@ -37,6 +37,19 @@ def with_unit(value: float, symbol: str = "m", form: str = ".3g") -> str:
     rounded = float(format(value, form))
     unit = unit_of(rounded, symbol)
     return f"{unit.factor * rounded:{'+' if form.startswith('+') else ''}g} {unit.name}"
+
+
+def with_error(value: float, error: float, sign: str = "") -> str:
+    """'9.8 ± 0.2': the error to one digit, the value to the same decimal place; `sign` is '+' for both signs."""
+    error = float(f"{error:.1g}")
+    if not isfinite(value) or not isfinite(error) or error <= 0.0:
+        return f"{value:{sign}.12g} ± {error:g}"
+    place = floor(log10(error))
+    value = round(value, -place) + 0.0  # no negative zero
+    if place >= 0 or not value:
+        return f"{value:{sign}.0f} ± {error:g}"
+    digits = min(floor(log10(abs(value))) - place + 1, 15)  # of a float, after which come digits of its rounding
+    return f"{value:{sign}#.{digits}g} ± {error:g}".replace(".e", "e")
 
 
 def as_written(numbers: Iterable[float]) -> str:

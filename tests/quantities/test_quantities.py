@@ -1,5 +1,6 @@
 """Every quantity: a finite value on one scene, bad input refused, and no argument without effect."""
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
-from verify.quantities.base import as_plain, as_text
+from verify.quantities.base import Estimate, as_plain, as_text
 from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
 from verify.studies.identify import Identify, Synthetic
 from verify.studies.motion import Motion
@@ -60,6 +61,7 @@ SCENES = {
     "elastic": scene_of(ELASTIC),
     "undamped": scene_of(STRIP, LIGHT, 7e-4),
     "motor": scene_of(DAMPED, replace(POINT, coupling="one-way")),
+    "fast": scene_of(DAMPED, replace(POINT, coupling="one-way", mass=0.05, speed=-0.3)),
     "device": scene_of(DAMPED, devices=(ENDED,)),
     "stacks": scene_of(DAMPED, actuator=STACK, kind="voltage"),
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
@@ -109,7 +111,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "motor.multiplier": ("motor", HELD),
     **{f"motor.{name}": ("motor", {**HELD, "speed": -3e-4}) for name in ("force_speed", "power", "friction_power")},
     "motor.efficiency": ("motor", {**HELD, "speed": -3e-4}), "motor.no_load_speed": ("motor", HELD),
-    **{f"motor.{n}": ("motor", {**HELD, "periods": 400}) for n in ("free_speed", "start_time")},
+    "motor.free_speed": ("motor", {**HELD, "periods": 400}), "motor.start_time": ("fast", {**HELD, "periods": 400}),
     "motor.contact_imbalance": ("motor", {**HELD, "periods": 60}),
     **{f"control.{n}": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7, "duration": 0.9}) for n in (
         "overshoot", "settling_time")},
@@ -157,6 +159,25 @@ def test_value_is_finite(name):
     assert np.isfinite([value.lower, value.upper] if isinstance(value, Bracket) else [value]).all()
     assert as_text(value)
     assert as_plain(value) is not None
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "shown"),
+    [
+        (-26.681102, 0.0019, "-26.681 ± 0.002"),
+        (21.767, 6.53, "22 ± 7"),
+        (1234.56, 32.0, "1230 ± 30"),
+        (0.0400021, 4.7e-5, "0.04000 ± 5e-05"),
+        (0.00996, 0.00096, "0.010 ± 0.001"),
+        (3.1234e-9, 2e-11, "3.12e-09 ± 2e-11"),
+        (1e-9, 2e-6, "0 ± 2e-06"),
+    ],
+)
+def test_an_estimate_is_a_number_shown_to_the_digits_that_hold(value, error, shown):
+    estimate = pickle.loads(pickle.dumps(Estimate(value, error)))
+    assert (estimate, estimate.error) == (value, error)
+    assert as_text(estimate) == shown
+    assert type(as_plain(estimate)) is float
 
 
 @pytest.mark.parametrize("name", QUANTITIES)

@@ -14,10 +14,12 @@ from verify.commands import shared
 def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tuple[str, ...], as_json: bool) -> None:
     """Evaluate QUANTITY of SCENE. `verify quantities` lists quantities and their arguments.
 
+    A mean of a run is printed with its error, to the digits that hold.
+
     Example: `verify measure paper mode.frequency_error model=segment mode=22 count=49`
     """
     from verify.analysis.solution_cache import SolutionCache
-    from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate, parse_arguments
+    from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
     from verify.report.result import Result
     from verify.scene.load import load_scene
     from verify.studies.sweep import quantity_margins
@@ -32,6 +34,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
         own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
+        own |= {"error": value.error} if isinstance(value, Estimate) else {}
         shared.print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
     else:
         result.print(shared.console())

@@ -6,6 +6,7 @@ sliding period, which are independent of the phase of the drive at the start.
 """
 
 from math import ceil, e
+from typing import Literal
 
 import numpy as np
 from msgspec import Struct
@@ -27,6 +28,17 @@ from verify.motor.steady_state import (
 
 FINE = 32
 """Number of periods of a free run with samples at every step; later one sample per period."""
+LEVEL = 1.0 - 1.0 / e
+"""Fraction of the change after a time constant."""
+STEADY = 0.05
+"""Largest error of a free speed, relative to it. A speed and a time constant are specified to some per cent; the error
+itself is part of the result. A wave that is partly standing changes the speed by much more in half a wavelength."""
+STANDSTILL = 1e-3
+"""Largest speed and error, relative to the crest speed, of a slider that stands: zero has no relative error."""
+OVERSHOOT = 0.05
+"""Excess of the mean speed over the final one, relative to its change, from which the approach has no time constant:
+`STEADY`. The mean force at one place depends on the speed alone, dv/dt = F(v)/m, and such an approach is monotone."""
+Missing = Literal["start", "overshoot", "resolution"]
 REASONS = {
     "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
@@ -34,7 +46,12 @@ REASONS = {
     "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
     "efficiency": "no power flows from the surface to the load, choose a speed between zero and the no-load speed",
     "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
-    "free speed": "the free run has not reached a steady state, raise periods or slider.preload",
+    "free speed": "the free run has not reached a steady state, raise periods or slider.preload, or lower the "
+    "standing-wave ratio along which the slider moves",
+    "overshoot": "the mean speed overshoots and has no time constant, lower the standing-wave ratio along which the "
+    "slider moves, or raise slider.mass",
+    "resolution": "the time constant is below a drive period, half of which is the least that means over a period "
+    "resolve, raise slider.mass",
     "start": "the change of speed in the free run is within its error, choose another slider.speed",
     "stop": "the speed does not fall to 1/e after the drive is switched off, raise periods",
     "reversal": "the speed does not change after the phases are reversed, raise periods",
@@ -68,6 +85,21 @@ def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
     return states[root]
 
 
+class TimeConstant(Struct, frozen=True, kw_only=True):
+    """Approach of the mean speed to a final one."""
+
+    time: float
+    """From the start of the run to 1 - 1/e of the change, s; infinite where it is not reached."""
+    error: float
+    """Of `time`, s."""
+    peak: float
+    """The mean speed farthest beyond the final or the initial one, m/s."""
+    peak_time: float
+    """To 1 - 1/e of the change to `peak`, s."""
+    missing: Missing | None
+    """Why the approach has no time constant."""
+
+
 class Transient(Struct, frozen=True, eq=False, kw_only=True):
     """A free run from an initial speed."""
 
@@ -82,33 +114,62 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     speed: float
     """Mean of `speeds` over the last quarter, m/s."""
     error: float
-    """Error of `speed`, m/s (`batch_error`)."""
+    """Error of `speed`, m/s: the largest of `batch_error` and the differences from the means of the two quarters
+    before. A slider that wanders along a standing wave may be slow for longer than one quarter."""
     last: int
     """Number of samples of `run` in the last quarter, a multiple of 16."""
     converged: bool
-    """Whether the run reached its end with `error` up to 5 % of the crest speed, mean acceleration up to 1 % of
-    mu N / mass and mean normal force within 10 % of the load."""
+    """Whether the run reached its end with `error` up to 5 % of `speed` (or both up to 0.1 % of the crest speed), mean
+    acceleration up to 1 % of mu N / mass and mean normal force within 10 % of the load."""
 
-    def time_constant(self, target: float | None = None) -> float | None:
-        """Time constant, s: 1 - 1/e of the change to `target` (m/s, default: the final speed).
+    def time_constant(self, target: float | None = None) -> TimeConstant:
+        """Time to 1 - 1/e of the change to `target` (m/s, default: the final speed).
 
-        At least half a drive period, the middle of the first mean. None where it is not reached, or without change.
+        Its error is that of the crossing, under `error` and under the fluctuation of the means in the last quarter, and
+        that of means over a period T, T^2/(24 t) in an exponential: 4 % at a period, below which there is no result.
         """
+        uncertain = self.error if target is None else 0.0
         target = self.speed if target is None else target
-        if abs(target - self.start_speed) <= self.error:
-            return None
-        change = (self.speeds - self.start_speed) / (target - self.start_speed)
-        past = np.flatnonzero(change >= 1.0 - 1.0 / e)
-        if not len(past):
-            return None
-        i = max(int(past[0]), 1)
-        return float(np.interp(1.0 - 1.0 / e, change[i - 1 : i + 1], self.times[i - 1 : i + 1]))
+        span, period = target - self.start_speed, 2.0 * float(self.times[0])
+        if not span:
+            return TimeConstant(time=np.inf, error=np.inf, peak=target, peak_time=np.inf, missing="start")
+        change = (self.speeds - self.start_speed) / span
+        steady, ends = change[-self.last :], (float(change.min()), float(change.max()))
+        band = LEVEL * uncertain / abs(span) + float(steady.std())
+        time, early, late = (_first(change, self.times, LEVEL + one) for one in (0.0, -band, band))
+        below, above = min(0.0, float(steady.min())) - ends[0], ends[1] - max(1.0, float(steady.max()))
+        peak, error = ends[below <= max(above, 0.0)], np.inf
+        peak_time = _first(np.sign(peak) * change, self.times, LEVEL * abs(peak))
+        excess = max(below, above) * abs(span)
+        if time < np.inf:
+            late = max([late, *self.times[change < LEVEL][-1:].tolist()])
+            error = max(time - early, late - time) + period**2 / (24.0 * time)
+        missing: Missing | None = None
+        if excess > uncertain + OVERSHOOT * abs(span) and peak_time >= period:
+            missing = "overshoot"
+        elif abs(span) <= uncertain or time == np.inf:
+            missing = "start"
+        elif time < period:
+            missing = "resolution"
+        elif error >= time:
+            missing = "start"
+        peak = self.start_speed + peak * span
+        return TimeConstant(time=time, error=error, peak=peak, peak_time=peak_time, missing=missing)
+
+
+def _first(change: Array, times: Array, level: float) -> float:
+    """Time at which `change` first reaches `level`, at least the first; infinite where it does not."""
+    past = np.flatnonzero(change >= level)
+    if not len(past):
+        return np.inf
+    i = max(int(past[0]), 1)
+    return float(np.interp(level, change[i - 1 : i + 1], times[i - 1 : i + 1]))
 
 
 def transient(case: MotorCase, periods: int, before: Transient | None = None) -> Transient:
     """The free slider over `periods` drive periods, from `slider.speed` or from the end of another run.
 
-    Raises InputError where the slider leaves the beam in the first period.
+    Raises InputError where the slider leaves the beam in the first period, or for fewer than 16 means.
     """
     fine = max(FINE, ceil(case.soft_start_periods))
     fine = periods if periods < 2 * fine else fine
@@ -124,18 +185,23 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
         run = replace(case, soft_start_periods=0.0).run(rest, rest + 1, run)
         times = np.append(times, run.times[1:] - begin - 0.5 * case.period)
         speeds = np.append(speeds, np.diff(run.travelled) / np.diff(run.times))
+    if len(speeds) < BATCHES:
+        raise InputError(f"periods = {periods!r}: {REASONS['free speed' if run.statistics.finished else 'left']}")
     last = max(len(run.times) // (4 * BATCHES), 1) * BATCHES
     batches = speeds[-last:].reshape(BATCHES, -1).mean(axis=1)
-    error, load = float(batch_error(batches)), slider.normal_force
+    speed, load = float(batches.mean()), slider.normal_force
+    quarters = speeds[-2 * last : -last].mean(), speeds[-3 * last : -2 * last].mean()
+    error = float(max(batch_error(batches), *(abs(speed - one) for one in quarters)))
     drift = abs(batches[: BATCHES // 2].mean() - batches[BATCHES // 2 :].mean()) / (run.times[-1] - run.times[-last])
-    steady = error <= 0.05 * crest_speed(case) and 2.0 * slider.mass * drift <= 0.01 * slider.mu * load
+    steady = error <= STEADY * abs(speed) or max(error, abs(speed)) <= STANDSTILL * crest_speed(case)
+    steady &= 2.0 * slider.mass * drift <= 0.01 * slider.mu * load
     carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= 0.1 * load
     return Transient(
         run=run,
         start_speed=before.speed if before else slider.speed,
         times=times,
         speeds=speeds,
-        speed=float(batches.mean()),
+        speed=speed,
         error=error,
         last=last,
         converged=bool(run.statistics.finished and steady and carries),

@@ -1,15 +1,15 @@
 """Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
-from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import msgspec
 from msgspec import Meta
 
 from verify.errors import InputError
+from verify.formatting import with_error, with_unit
 from verify.quantities import options as opt
-from verify.quantities.base import Scene, quantity
+from verify.quantities.base import Estimate, Scene, quantity
 from verify.validation import unit
 
 if TYPE_CHECKING:
@@ -84,20 +84,28 @@ def _at_speed(
         return value
 
 
-_at_speed("force_speed", "N", "Mean friction force on the slider", lambda at: at.means.force, "force")
-_at_speed("power", "W", "Mean mechanical power on the slider", lambda at: at.power, "force")
+def _mean(name: str) -> "Callable[[SteadyState], float]":
+    return lambda at: Estimate(getattr(at.means, name), getattr(at.errors, name))
+
+
+def _power(at: "SteadyState") -> float:
+    return Estimate(at.power, abs(at.speed) * at.errors.force)
+
+
+_at_speed("force_speed", "N", "Mean friction force on the slider", _mean("force"), "force")
+_at_speed("power", "W", "Mean mechanical power on the slider", _power, "force")
 _at_speed("efficiency", "1", "Power over tangential surface power", lambda at: at.efficiency, "force", "powers")
-_at_speed("normal_mean", "N", "Mean normal force on the slider", lambda at: at.means.normal_force, "normal force")
+_at_speed("normal_mean", "N", "Mean normal force on the slider", _mean("normal_force"), "normal force")
 for _one in ("contact", "stick"):
-    _read = attrgetter(f"means.{_one}_fraction")
-    _at_speed(f"{_one}_fraction", "1", f"Fraction of points and time in {_one}", _read, "fractions")
-_at_speed("friction_power", "W", "Power lost in friction and compliance", lambda at: at.means.friction_power, "powers")
+    _name = f"{_one}_fraction"
+    _at_speed(_name, "1", f"Fraction of points and time in {_one}", _mean(_name), "fractions")
+_at_speed("friction_power", "W", "Power lost in friction and compliance", _mean("friction_power"), "powers")
 
 
 @quantity("motor.stall_force", unit="N")
 def stall_force(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> float:
     """Mean friction force on the slider at standstill."""
-    return motor.state(scene, cache, 0.0, "force").means.force
+    return _mean("force")(motor.state(scene, cache, 0.0, "force"))
 
 
 @quantity("motor.no_load_speed", unit="m/s")
@@ -114,30 +122,49 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
     periods: Annotated[int, Meta(ge=2, description="number of drive periods")] = 2000
 
     def run(self, scene: Scene, cache: "SolutionCache") -> "Transient":
-        """The free run. Raises InputError where the slider leaves the beam or reaches no steady state."""
+        """The free run. Raises InputError where the slider leaves the beam."""
         from verify.motor.curves import REASONS, transient
 
         free: Transient = cached(cache, transient, self.case(scene), self.periods)
-        if not free.converged:
-            reason = REASONS["free speed" if free.run.statistics.finished else "left"]
-            raise InputError(f"periods = {self.periods!r}: {reason}")
+        if not free.run.statistics.finished:
+            raise InputError(f"periods = {self.periods!r}: {REASONS['left']}")
         return free
+
+    def check(self, free: "Transient") -> None:
+        """Raise InputError, with the mean and its error, where a run has reached no steady state."""
+        from verify.motor.curves import REASONS
+
+        if not free.converged:
+            last = with_error(1e3 * free.speed, 1e3 * free.error)
+            raise InputError(f"periods = {self.periods!r}: {REASONS['free speed']} (last quarter: {last} mm/s)")
 
 
 @quantity("motor.free_speed", unit="m/s")
-def free_speed(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
+def free_speed(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
     """Mean speed of the free slider over the last quarter of a run; a light slider varies within a drive period."""
-    return free.run(scene, cache).speed
+    free = motor.run(scene, cache)
+    motor.check(free)
+    return Estimate(free.speed, free.error)
 
 
 @quantity("motor.start_time", unit="s")
-def start_time(scene: Scene, cache: "SolutionCache", free: FreeRun) -> float:
-    """Time constant of the free slider's start: 1 - 1/e of the change to its final mean speed."""
+def start_time(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
+    """Time constant of the free slider's start: 1 - 1/e of the change to its final mean speed, without overshoot."""
     from verify.motor.curves import REASONS
 
-    if (time := free.run(scene, cache).time_constant()) is None:
-        raise InputError(f"periods = {free.periods!r}: {REASONS['start']}")
-    return time
+    free = motor.run(scene, cache)
+    start = free.time_constant()
+    if start.missing == "overshoot":
+        peak, there = with_unit(start.peak, "m/s"), with_unit(start.peak_time, "s")
+        course = f"reaches {peak} (1 - 1/e of the change at {there}), then returns to {with_unit(free.speed, 'm/s')}"
+        raise InputError(f"periods = {motor.periods!r}: {REASONS['overshoot']} (it {course})")
+    motor.check(free)
+    if start.missing == "resolution":
+        half, mass = with_unit(float(free.times[0]), "s"), motor.case(scene).slider.mass
+        raise InputError(f"slider.mass = {mass!r} kg: {REASONS['resolution']} ({half})")
+    if start.missing:
+        raise InputError(f"periods = {motor.periods!r}: {REASONS['start']}")
+    return Estimate(start.time, start.error)
 
 
 @quantity("motor.multiplier", unit="1")

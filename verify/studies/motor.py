@@ -1,16 +1,17 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, on every model."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from math import copysign
+from math import copysign, inf
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.formatting import unit_of, with_unit
+from verify.formatting import unit_of, with_error, with_unit
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
@@ -19,11 +20,14 @@ from verify.studies.motion import Damping, check_driven, check_start, readings, 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
     from verify.analysis.verdict import Margin
-    from verify.motor.curves import Transient
+    from verify.motor.curves import TimeConstant, Transient
     from verify.motor.steady_state import MotorCase, SteadyState
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
+UNEVEN = 1.25
+"""Standing-wave ratio from which the crest speed, and with it that of a slider on short feet, varies along the beam by
+more than a tenth about its mean."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
 SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
@@ -37,15 +41,17 @@ CHARTS = {
 }  # fmt: skip
 NOTES = (
     "Crest speed: amplitude of the tangential surface velocity at the slider. No-load speed: prescribed, with zero "
-    "mean force, of a heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run.",
+    "mean force, of a heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run, "
+    "not given where it has not converged; its error includes the change from the two quarters before.",
     "Largest power and best efficiency: over the prescribed speeds. Friction and dashpot power: of the free run.",
-    "Fractions: last quarter of the free run. Start, stop, reversal: time constants of means over a sliding period.",
+    "Fractions: last quarter of the free run. Start, stop, reversal: 1 - 1/e of the change of the mean over a sliding "
+    "period, where this mean converges without an overshoot of 5 % in a drive period or more.",
 )
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """One model under the slider, SI; `stop` is None where the beam would ring on, `times` are time constants."""
+    """One model under the slider, SI; `stop` is None where the beam would ring on; `times` of approaches."""
 
     case: "MotorCase"
     name: str
@@ -55,7 +61,7 @@ class Field:
     free: "Transient"
     stop: "Transient | None"
     reversal: "Transient | None"
-    times: dict[str, float | None]
+    times: "dict[str, TimeConstant]"
     missing: list[str]
     """Why figures are not available, keys of `curves.REASONS`."""
 
@@ -115,7 +121,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             fields.append(
                 self._field(case, like, cache, lambda what: progress(f"{next(number)} of {self.steps}: {what}"))
             )
-        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache) + reduction_margins(scene)
+        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
+        margins += path_margins(first.case.model, first.case.count, scene, cache) + reduction_margins(scene)
         valid = verdict_of(margins).level != "not trusted"
         summary = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
         summary += ", " + _with_error("stall force", still.means.force, still.errors.force, "N")
@@ -153,25 +160,32 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
         rings = case.slider.coupling == "two-way"
-        begin = free.time_constant() if free.converged else None
+        begin = free.time_constant()
         if free.run.statistics.finished and self.start == "steady":
-            shown = 2.0 * TIME_CONSTANTS * begin / case.period + 2.0 if begin else self.periods
-            periods = min(int(shown), self.periods)
+            scale = inf if begin.missing or not free.converged else begin.time / case.period
+            periods = int(min(2.0 * TIME_CONSTANTS * scale + 2.0, self.periods))
             stop = None if rings else curves.stop(case, free, periods)
             reversal = curves.reversal(case, free, periods)
-        times: dict[str, float | None] = dict.fromkeys(("start", "stop", "reversal"))
-        if free.converged:
-            ends = ("start", free, free.speed), ("stop", stop, 0.0), ("reversal", reversal, -free.speed)
-            times |= {key: one.time_constant(target) if one else None for key, one, target in ends}
-            missing += [key for key, one, _ in ends if one and times[key] is None]
+        times: dict[str, TimeConstant] = {}
+        if free.converged or begin.missing == "overshoot":
+            times["start"] = begin
+        if free.converged and stop:
+            times["stop"] = stop.time_constant(0.0)
+        if free.converged and reversal:
+            times["reversal"] = reversal.time_constant()
+            if not reversal.converged:
+                times["reversal"] = replace(times["reversal"], missing="start")
+        missing += dict.fromkeys(
+            key if at.missing == "start" else at.missing for key, at in times.items() if at.missing
+        )
         missing += ["ringing"] * rings
         return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
 
 
 def _with_error(name: str, value: float, error: float, symbol: str) -> str:
-    """'Free speed -26.68 ± 0.02 mm/s', with a remark where the value lies within its error."""
+    """'Free speed -26.68 ± 0.02 mm/s', to the digits that hold, with a remark where the value lies within its error."""
     unit = unit_of(max(abs(value), error), symbol)
-    text = f"{name} {unit.factor * value:+.4g} ± {float(f'{unit.factor * error:.1g}'):g} {unit.name}"
+    text = f"{name} {with_error(unit.factor * value, unit.factor * error, '+')} {unit.name}"
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
 
 
@@ -197,12 +211,28 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
+def path_margins(model: str, count: int | None, scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
+    """Condition of the speed of a slider that moves along a partly standing wave."""
+    from verify.analysis.verdict import Margin
+    from verify.quantities.base import evaluate
+
+    with suppress(InputError):  # no two waves in the window
+        ratio: Any = evaluate("wave.standing_wave_ratio", {"model": model, "count": count}, scene, cache)
+        path = f"the speed along the path of the run is meant (standing-wave ratio {ratio:.3g})"
+        name = "variation of the speed along the beam"
+        return [Margin(name=name, size=ratio, fine=UNEVEN, limit=inf, condition=path, is_error=False)]
+    return []
+
+
 def _tables(fields: list[Field]) -> "list[Table]":
     from verify.motor.steady_state import surface_motion
     from verify.report.result import Column
 
     def last(field: Field, share: str) -> float:
         return float(getattr(field.free.run, share)[-field.free.last :].mean())
+
+    def time(field: Field, key: str, figure: str = "time") -> float | None:
+        return getattr(field.times[key], figure) if key in field.times and not field.times[key].missing else None
 
     def power(field: Field, loss: str) -> float:
         return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
@@ -227,9 +257,10 @@ def _tables(fields: list[Field]) -> "list[Table]":
     times = model | {
         percent("contact fraction", ".3g"): lambda field: last(field, "contact_fraction"),
         percent("stick fraction", ".3g"): lambda field: last(field, "stick_fraction"),
-        si("start", "s", ".3g"): lambda field: field.times["start"],
-        si("stop", "s", ".3g"): lambda field: field.times["stop"],
-        si("reversal", "s", ".3g"): lambda field: field.times["reversal"],
+        si("start", "s", ".3g"): lambda field: time(field, "start"),
+        si("its error", "s", ".1g"): lambda field: time(field, "start", "error"),
+        si("stop", "s", ".3g"): lambda field: time(field, "stop"),
+        si("reversal", "s", ".3g"): lambda field: time(field, "reversal"),
     }
     curve: dict[Any, Callable[[Any], Any]] = {
         Column("model"): lambda row: row[0],
@@ -266,7 +297,7 @@ def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
         v = np.array([at.speed for at in states])
         lines["motor-force"].append((name, v, np.array([at.means.force for at in states]), style))
         lines["motor-power"].append((name, v, np.array([at.power for at in states]), style))
-        shown = TIME_CONSTANTS * max(filter(None, field.times.values()), default=np.inf)
+        shown = TIME_CONSTANTS * max((at.time for at in field.times.values() if not at.missing), default=np.inf)
         for dash, one in {"-": field.free, ":": field.stop, "--": field.reversal}.items():
             if one is not None:
                 n = max(int(np.searchsorted(one.times, shown)), 3)

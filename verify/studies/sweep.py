@@ -201,9 +201,12 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
 def figure_margins(
     name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
 ) -> list[Margin]:
-    """Condition of `wave.crest_speed`, inverse to |w| at the crests, and of `mode.order`, near the order in theory."""
+    """Conditions of `wave.crest_speed`, of a free slider on a wave, and of `mode.order`, near the order in theory."""
     from verify.analysis.comparison import ORDER_SPREAD
+    from verify.studies.motor import path_margins
 
+    if name in ("motor.free_speed", "motor.start_time"):
+        return path_margins(arguments.get("model", "segment"), arguments.get("count"), scene, cache)
     if name == "wave.crest_speed":
         ratio: Any = evaluate("wave.standing_wave_ratio", arguments, scene, cache)
         fast = f"the fastest over the slowest crests along the beam are the standing-wave ratio, {ratio:.3g}"
