@@ -108,11 +108,16 @@ def _carried(contacts: Contacts, depth: Array, compliance: Array, moves: Array) 
     return normal, place.reshape(m, 3)
 
 
-def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
-    """Modal amplitudes of a beam in static equilibrium under the sliders, (n,), sqrt(kg) m.
+def static_deflection(
+    basis: TimeBasis, contacts: Contacts, released: Callable[[Array, float], Array], dt: float
+) -> tuple[Array, Array]:
+    """Static equilibrium under the sliders: modal amplitudes, (n,), sqrt(kg) m, and a rise of points, (points,), m.
 
     A normal force acts at the material point x + (h/2) w', square to the surface, and so has the moment (h/2) w' per
-    unit force on the section. Between two beams the depth is increased until each carries the preload.
+    unit force on the section. Between two beams the depth is increased until each carries the preload. The engine
+    evaluates the surface under feet in the middle of a step and without its contact forces: `released` are amplitudes
+    after a time without them. The equilibrium is one of steps of dt with the rise of the surface that this makes; for
+    points without feet dt is 0. Sets the speed along that the contact forces of a step before would have cancelled.
     """
     p, x = contacts.points, contacts.start + contacts.points[:, lay.OFFSET]
     side, lever, slopes = p[:, lay.WEIGHT], p[:, lay.LEVER], basis.shapes(x, 1)
@@ -128,17 +133,22 @@ def static_deflection(basis: TimeBasis, contacts: Contacts) -> Array:
 
     q = np.zeros(len(basis.omegas))
 
+    def level(q: Array) -> Array:
+        at = np.clip(x + lever * (q @ slopes), 0.0, basis.beam.length)
+        return np.asarray(q @ basis.shapes(at, 0))
+
     def surface(normal: Array, friction: Array) -> tuple[Array, Array]:
         nonlocal q
-        across, along, slope = shapes(q)
+        across, along, slope = shapes(released(q, 0.5 * dt))
         q = -(across @ (side * normal) + along @ (p[:, lay.WEIGHT] * friction)) / basis.omegas**2
-        at = np.clip(x + lever * (q @ slopes), 0.0, basis.beam.length)
-        return q @ basis.shapes(at, 0), slope
+        return level(released(q, 0.5 * dt)), slope
 
     gained = equilibrium(contacts, surface, compliance_of(basis, contacts))
     if len(contacts.feet):
         p[:, lay.INSET] += gained[contacts.indices[:, lay.OF_FOOT]]
-    return np.asarray(q)
+    if dt > 0.0:
+        contacts.contacts[:, lay.BEFORE] = (q - released(q, dt)) / dt @ shapes(released(q, 0.5 * dt))[1]
+    return q, level(released(q, 0.5 * dt)) - level(q)
 
 
 def compliance_of(basis: TimeBasis, contacts: Contacts) -> Array:
@@ -164,9 +174,10 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
     return stage.rows.of_state(phasors.real, (1j * omega * phasors).real)
 
 
-def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
+def set_down(contacts: Contacts, stage: Stage, z: ComplexArray, rise_of_step: Array | float = 0.0) -> None:
     """Set sliders in equilibrium on the surface of free rows z: places of feet, depths, friction, normal velocities.
 
+    `rise_of_step` is that of `static_deflection`.
     Raises InputError for a foot without load.
     """
     p, state, x = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
@@ -186,13 +197,14 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray) -> None:
         state[:, lay.RISE_RATE] = climb
         normal = p[:, lay.LOAD]
     else:
-        level = p[:, lay.IMAGE] * level - p[:, lay.ARM] * contacts.feet[foot, lay.PITCH]
+        level = p[:, lay.IMAGE] * (level + rise_of_step) - p[:, lay.ARM] * contacts.feet[foot, lay.PITCH]
         depth = p[:, lay.INSET] + p[:, lay.FACE] * level
         moves = np.zeros((len(contacts.feet), 3), dtype=bool)
         moves[:, 0] = ~_between(contacts)
         normal, place = _carried(contacts, depth, np.zeros((len(p), len(p))), moves)
         contacts.feet[:, lay.HEIGHT] = place[:, 0]
         state[:, lay.DEPTH] = depth - p[:, lay.FACE] * contacts.feet[foot, lay.HEIGHT]
+    contacts.at_rest = True
     state[:, lay.FRICTION] = _holding(contacts, normal, slope)
     slider = contacts.sliders[contacts.indices[:, lay.OF_SLIDER]]
     above = abs(state[:, lay.FRICTION]) > slider[:, lay.MU] * normal * (1.0 + 1e-12)  # only a point that sticks has it

@@ -106,14 +106,21 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Free rows at the start, (n,), sliders in equilibrium or in the state of an earlier run. Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
         z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
+        dt = stage.steps.dt if contacts.law == lay.SPRING and contacts.restitution is None else 0.0
+        rise: Array | float = 0.0
+
+        def released(q: Array, seconds: float) -> Array:
+            rows = stage.rows
+            return rows.state(rows.after(rows.of_state(q, 0.0 * q), seconds))[0][: len(q)] if dt else q
+
         if basis and loaded and contacts.normal_two_way:
-            still = static_deflection(basis, contacts)
+            still, rise = static_deflection(basis, contacts, released, dt)
             z = stage.rows.of_state(still, 0.0 * still)
             if stage.forced is None and contacts.law == lay.BILATERAL:
                 z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
         z = stage.free(request.continued(stage) if before else z)
         if before is None or before.contact is None:
-            set_down(contacts, stage, z)
+            set_down(contacts, stage, z, rise)
             return z
         state = before.contact
         if state.points.shape != contacts.contacts.shape or len(state.feet) != len(contacts.feet):

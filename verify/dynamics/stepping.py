@@ -50,6 +50,8 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """m/s^2, along the slope for kinematics "following"."""
     moving_load: bool = False
     """Prescribed speed without friction: the run continues without contact after a point has left the beam."""
+    at_rest: bool = False
+    """Whether the state is an equilibrium, with depths of the middle of the first step."""
     restitution: float | None = None
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
 
@@ -212,7 +214,8 @@ class Run:
         self.first[:, [lay.OUT_X, lay.OUT_V]] = sliders[:, [lay.X, lay.V]]
         self.first[:, lay.OUT_TOUCH] = 1.0
         if self.contacts.law == lay.SPRING:
-            depth, owner = np.maximum(contacts[:, lay.WAS_DEPTH], 0.0), self.contacts.indices[:, lay.OF_SLIDER]
+            column = lay.DEPTH if self.contacts.at_rest else lay.WAS_DEPTH
+            depth, owner = np.maximum(contacts[:, column], 0.0), self.contacts.indices[:, lay.OF_SLIDER]
             load = self.contacts.points[:, lay.STIFF] * depth
             self.first[:, lay.OUT_NORMAL] = np.bincount(owner, load, len(sliders))
             self.sums[:, lay.STORED] = -0.5 * np.bincount(owner, load * depth, len(sliders))
