@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
+from verify.blas import one_blas_thread
 from verify.errors import InputError
 from verify.scene.gates import GateResult, run_gate
 from verify.scene.load import load_scene
@@ -86,6 +87,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return Verdict(level="trusted", headline=headline, margins=found.margins)
 
 
+@one_blas_thread()
 def run_scene(
     scene: Scene | str | Path, progress: Progress = lambda step: None, overrides: Sequence[str] = ()
 ) -> RunResult:
