@@ -198,4 +198,6 @@ def slider_imbalance(scene: Scene, cache: "SolutionCache", by: OnChain, slider: 
     """Residual of the slider's energy balance on the nonlinear chain, over the friction loss."""
     energy = by.run(scene, cache, slider).energy
     assert energy is not None
+    if not energy.friction_loss:
+        raise InputError("slider.mu = 0: nothing is lost in friction, give it a value above 0")
     return abs(energy.slider_residual) / energy.friction_loss

@@ -98,14 +98,15 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
 
     def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
-        """Simulate the slider on every model. Raises InputError."""
+        """Simulate the slider on every model. Raises InputError, also without a slider."""
         import numpy as np
 
         from verify.analytic_modes import check_in_time
         from verify.dynamics.simulate import simulate
 
+        if scene.slider is None:
+            raise InputError("motion: its study moves a slider, add [slider], or measure a quantity in time")
         scene = replace(scene, studies={**scene.studies, "motion": self})
-        assert scene.slider is not None
         assert scene.drive is not None
         count = self.size(scene, cache)
         steps = self.duration * scene.drive.frequency_hz * self.steps_per_period
@@ -153,7 +154,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         keys += ["coupling", "margins", "energy", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
-            tables=[*_tables(runs), *([readings(scene)] if exact else [])],
+            tables=[*_tables(runs), *([readings(scene)] if exact and scene.slider.contact is None else [])],
             figures=figures,
             movies=[Movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
             data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
@@ -200,10 +201,12 @@ def _title(run: "Run") -> str:
 
 
 def _tables(runs: "dict[str, Run]") -> "list[Table]":
+    from verify.dynamics.step_control import exchanged
+
     exact, all_runs = runs["analytic"].displacement if "analytic" in runs else 0.0, runs.values()
 
     def imbalance(run: "Run") -> float | None:
-        return run.energy.residual / run.energy.drive_work if run.energy and run.energy.drive_work else None
+        return abs(run.energy.residual) / exchanged(run) if run.energy and exchanged(run) else None
 
     results = {
         Column("model"): _title,
