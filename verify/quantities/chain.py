@@ -199,5 +199,5 @@ def slider_imbalance(scene: Scene, cache: "SolutionCache", by: OnChain, slider: 
     energy = by.run(scene, cache, slider).energy
     assert energy is not None
     if not energy.friction_loss:
-        raise InputError("slider.mu = 0: nothing is lost in friction, give it a value above 0")
+        raise InputError("slider.mu: friction dissipates nothing in this run, give another slider or a longer duration")
     return abs(energy.slider_residual) / energy.friction_loss
