@@ -10,6 +10,7 @@ from verify.actuators.patch import Patch
 from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
+from verify.chain.slider_on_chain import slide_on_chain
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
@@ -233,6 +234,13 @@ def test_quantities_of_a_slider_that_may_leave_the_beam_are_those_of_its_run():
         DAMPED, FORCES, 731.0, 3.1e-3, **{**settings, "slider": replace(scene.slider, mu=0.31)}, samples=2
     )
     assert evaluate("slider.displacement", {**arguments, "mu": 0.31}, scene, cache) == changed.displacement
+
+
+def test_a_slider_that_may_leave_the_nonlinear_chain_moves_as_by_a_direct_call():
+    scene = replace(SCENES["undamped"], slider=replace(POINT, coupling="one-way"))
+    run = slide_on_chain(STRIP, FORCES, 731.0, 7e-4, slider=scene.slider, count=6, steps_per_period=40, samples=2)
+    value = evaluate("chain.slider_displacement", {"segments": 6}, scene, SolutionCache(STRIP))
+    assert value == run.displacement != 0.0
 
 
 def test_words_are_read_by_type():
