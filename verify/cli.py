@@ -91,7 +91,7 @@ def status_of(argv: list[str] | None = None) -> int:
 def main() -> NoReturn:
     """Entry point of the command `verify`.
 
-    The matrices here are small or banded: threads of BLAS slow them down, so one is the default.
+    This process is its own: BLAS has one thread from the start, while `one_blas_thread` only stops the others.
     """
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")

@@ -43,6 +43,9 @@ READINGS: tuple[str, ...] = get_args(Reading)
 """Interpolation between joints. corrected: spline through y + delta^2 y / 12. raw: spline through y. links: straight
 links."""
 
+ChainReading = Literal["corrected", "links"]
+"""Interpolation between the joints of a nonlinear chain, as of `Reading`."""
+
 Line = Literal["spline", "raw"]
 """Contact line of a chain. spline: the paper's C2 spline (Section II.B). raw: the straight edges of the links."""
 

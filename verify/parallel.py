@@ -12,6 +12,7 @@ from contextvars import ContextVar
 from threading import Thread
 from typing import Any, TypeVar
 
+from verify.blas import one_blas_thread
 from verify.errors import InputError, shown
 
 Item = TypeVar("Item")
@@ -120,6 +121,12 @@ def workers(most: int, processes: int | None = None) -> Iterator[Executor | None
     pool.shutdown()
 
 
+@one_blas_thread()
+def _result(function: Callable[[Item], Result], item: Item) -> Result:
+    """`function(item)`, here or in a worker, whose processes have the cores to themselves."""
+    return function(item)
+
+
 def completed(
     function: Callable[[Item], Result], items: Iterable[Item], executor: Executor | None, *, first_here: bool = False
 ) -> Iterator[tuple[int, Result]]:
@@ -131,12 +138,12 @@ def completed(
     todo = list(items)
     own = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
     for i, item in enumerate(todo[:own]):
-        yield i, function(item)
+        yield i, _result(function, item)
     if executor is None or own == len(todo):
         return
     from concurrent.futures import as_completed
 
-    futures = {executor.submit(function, item): i for i, item in enumerate(todo[own:], own)}
+    futures = {executor.submit(_result, function, item): i for i, item in enumerate(todo[own:], own)}
     try:
         for future in as_completed(futures):
             yield futures[future], future.result()

@@ -5,6 +5,7 @@ import pytest
 from msgspec import structs
 from reference.multibody import rigid_motion
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.chain.benchmarks import (
     contact_line_error,
     departure,
@@ -14,8 +15,11 @@ from verify.chain.benchmarks import (
     transient,
 )
 from verify.chain.system import build_system
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
+from verify.quantities.base import evaluate
+from verify.scene.model import Drive, Scene, SceneForce
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0)
 PLATE = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -37,6 +41,25 @@ def departed(amplitude, inertia, n=17):
 def test_work_energy_and_damping_balance_under_all_loads(tip):
     assert energy_balance_error(6, tip, 1e-9) < 2e-7
     assert energy_balance_error(6, tip, 1e-6) < 2e-4
+
+
+@pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free"), ("clamped", "pinned")])
+@pytest.mark.parametrize(("n", "x"), [(50, 0.0613), (13, 0.2917)])
+def test_deflection_at_small_forces_is_that_of_the_linear_segment_model(supports, n, x):
+    beam = structs.replace(PLATE, supports=supports)
+    linear = simulate(beam, forces(1.0), HERTZ, 9e-4, model="segment", count=n, start="rest", at=x, samples=2)
+
+    def gap(amplitude, **options):
+        force = tuple(SceneForce(**structs.asdict(one)) for one in forces(amplitude))
+        scene = Scene(name="chain", beam=beam, drive=Drive(frequency_hz=HERTZ, kind="force", force=force))
+        arguments = {"segments": n, "time": 9e-4, "x": x, **options}
+        chain = evaluate("chain.transient_deflection", arguments, scene, SolutionCache(beam))
+        return abs(chain / (amplitude * linear.deflection[-1, 0]) - 1.0)
+
+    small, larger = gap(0.05), gap(0.2)
+    assert small < 1e-5
+    assert larger < 25.0 * small + 1e-6  # of order 2 in the force
+    assert min(gap(0.2, reading="links"), gap(0.2, load="lever")) > 10.0 * larger
 
 
 def test_the_linear_chain_is_the_limit_of_small_forces():

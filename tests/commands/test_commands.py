@@ -193,6 +193,56 @@ def test_table_of_another_study(data, bare):
     assert len(data("table bare.toml modes=2 --study spectrum")["tables"][0]["rows"]) == 2
 
 
+FEET = """name = "feet"
+[beam]
+length = 0.43
+width = 0.017
+thickness = 0.0023
+youngs_modulus = 113e9
+density = 4470.0
+supports = ["clamped", "free"]
+loss_factor = 0.02
+[drive]
+frequency_hz = 171.0
+force = [{ position = 0.13, amplitude = 0.7 }]
+[slider]
+mass = 0.011
+mu = 0.23
+law = "coulomb"
+position = 0.29
+preload = 1.7
+coupling = "one-way"
+contact = { stiffness = 2.3e5, damping = 3.1 }
+foot = [{ length = 0.017, points = 3 }]
+[motion]
+duration = 0.023
+soft_start_periods = 1.5
+count = 7
+samples = 12
+"""
+
+
+def test_a_slider_that_may_leave_the_beam_moves_by_table_run_and_measure(data, bare):
+    Path("feet.toml").write_text(FEET)
+    rows = data("table feet.toml --study motion")["tables"][0]["rows"]
+    by_run = data("run feet.toml --no-report")["results"]["motion"]["tables"][0]["rows"]
+    assert [row["displacement"] for row in rows] == [row["displacement"] for row in by_run]
+    for row, model in zip(rows, ("model=analytic", "model=segment count=7", "model=fem count=7"), strict=True):
+        measured = data(f"measure feet.toml slider.displacement {model}")["value"]
+        assert row["displacement"] == pytest.approx(measured, rel=1e-2)  # samples cut its steps
+        assert row["mean speed"] == pytest.approx(row["displacement"] / 0.023, rel=1e-9)
+        assert row["energy imbalance"] < 0.01
+
+
+def test_motion_without_slider_is_no_study_and_its_table_names_what_it_needs(call, data, bare):
+    before, after = FEET.split("[slider]")
+    Path("beam.toml").write_text(before + "[motion]" + after.split("[motion]")[1])
+    assert not next(row for row in data("plan beam.toml")["tables"][0]["rows"] if row["what"] == "motion")["runs"]
+    status, _, err = call("table beam.toml --study motion")
+    assert status == 2
+    assert "slider" in err
+
+
 def test_charts_are_written(call, bare):
     assert call("table bare.toml --study spectrum --charts charts")[0] == 0
     assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))

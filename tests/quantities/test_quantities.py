@@ -11,6 +11,7 @@ from verify.actuators.patch import Patch
 from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
+from verify.chain.slider_on_chain import slide_on_chain
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
@@ -242,6 +243,27 @@ def test_equals_direct_call():
     assert figure("wave.signed_area_spread") == pytest.approx(wave.signed_area_spread, rel=1e-9)
 
 
+def test_quantities_of_a_slider_that_may_leave_the_beam_are_those_of_its_run():
+    scene, cache, time = SCENES["motor"], CACHES["motor"], {"time": 3.1e-3, "soft_start_periods": 0.7}
+    settings = {"model": "fem", "count": 13, "slider": scene.slider, "start": "rest", "soft_start_periods": 0.7}
+    run = simulate(DAMPED, FORCES, 731.0, 3.1e-3, **settings, samples=2)
+    arguments = {"model": "fem", "count": 13, **time}
+    for name in ("displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"):
+        assert evaluate(f"slider.{name}", arguments, scene, cache) == getattr(run, name)
+    assert evaluate("slider.energy", {**arguments, "of": "slider"}, scene, cache) == run.energy.slider
+    changed = simulate(
+        DAMPED, FORCES, 731.0, 3.1e-3, **{**settings, "slider": replace(scene.slider, mu=0.31)}, samples=2
+    )
+    assert evaluate("slider.displacement", {**arguments, "mu": 0.31}, scene, cache) == changed.displacement
+
+
+def test_a_slider_that_may_leave_the_nonlinear_chain_moves_as_by_a_direct_call():
+    scene = replace(SCENES["undamped"], slider=replace(POINT, coupling="one-way"))
+    run = slide_on_chain(STRIP, FORCES, 731.0, 7e-4, slider=scene.slider, count=6, steps_per_period=40, samples=2)
+    value = evaluate("chain.slider_displacement", {"segments": 6}, scene, SolutionCache(STRIP))
+    assert value == run.displacement != 0.0
+
+
 def test_words_are_read_by_type():
     words = ["model=fem", "mode=3", "counts=20, 40-80:20", "grading=1.3"]
     expected = {"model": "fem", "mode": 3, "counts": [20, 40, 60, 80], "grading": 1.3}
@@ -265,6 +287,7 @@ def test_words_are_read_by_type():
         ("motor.stall_force", "motor", {**HELD, "theory": "rayleigh"}, "a motor has Euler-Bernoulli theory alone"),
         ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
+        ("slider.displacement", "motor", {"kinematics": "following", "time": 1e-3}, "slider.kinematics = 'following'"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),
         ("wave.deflection", "driven", {"x": 0.74}, "x = 0.74 lies off the beam"),
         ("slider.order", "driven", {"counts": [8, 16, 32]}, "counts = .* and steps = .*: give one"),

@@ -157,9 +157,12 @@ def sufficient_count(
     return max(last + 1, first)
 
 
-def against_exact(what: str, model: str, value: float, exact: float) -> Margin:
-    """Difference from the exact beam, which answers up to 100 %: large near a resonance at a small frequency error."""
-    size = abs(value / exact - 1.0) if exact else 0.0 if value == exact else inf
+def against_exact(what: str, model: str, value: float, exact: float, rounding: float = 0.0) -> Margin:
+    """Difference from the exact beam, which answers up to 100 %: large near a resonance at a small frequency error.
+
+    Values that differ by up to `rounding` are equal.
+    """
+    size = 0.0 if abs(value - exact) <= rounding else abs(value / exact - 1.0) if exact else inf
     off, limit = f"{what} of {model} is off by {per_cent(size)}", inf if size <= 1.0 else 1.0
     return Margin(name=f"{what} of {model}", size=size, limit=limit, condition=f"the exact beam answers: {off}",
                   failure=f"{off} of the exact beam's", remedy=f"give more than {model}")  # fmt: skip

@@ -172,7 +172,7 @@ def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], 
 
     def run(samples: int = 200, **how: Any) -> tuple[Array, Array]:
         times = np.linspace(0.0, problem.duration, samples + 1)[1:]
-        return times, simulate_chain(system, start, times, **how).deflection([x])[:, 0]
+        return times, simulate_chain(system, start, times, **how).deflection([x], reading="links")[:, 0]
 
     return run, step_limit(system)
 

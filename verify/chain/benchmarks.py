@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from math import ceil, pi, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from msgspec import structs
@@ -20,7 +20,7 @@ from verify.chain.motion import ChainMotion, Progress, check_moved, from_rest, s
 from verify.chain.statics import bend
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system, link_at, straight_chain
 from verify.errors import InputError
-from verify.options import Inertia, Links, Tip, Wall
+from verify.options import Inertia, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segments.chain import link_inertia
 from verify.validation import check_integer, check_number
@@ -99,7 +99,7 @@ def large_amplitude_frequency(
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)
     motion = simulate(system, start, times, tolerance=1e-10, progress=progress)
     check_moved(motion)
-    middle = motion.deflection([0.5 * beam.length])[:, 0]
+    middle = motion.deflection([0.5 * beam.length], reading="links")[:, 0]
     k = int(np.argmax(middle <= 0.0))  # stiffer than linear: zero within a quarter of the linear period
     return pi / 2.0 / float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])) / linear
 
@@ -165,7 +165,7 @@ def contact_line_error(beam: Beam, mode: int, count: int, x: float) -> float:
 def linear_deflection(system: ChainSystem, times: Array, x: float | Array) -> Array:
     """Deflection at x of the undamped linearised chain from rest by modal superposition, (n,) or (n, len(x)), m.
 
-    For a straight system with transverse harmonic loads.
+    On the straight links; for a straight system with transverse harmonic loads.
     """
     from scipy.linalg import eigh
 
@@ -200,6 +200,7 @@ def transient(
     times: Sequence[float] | Array,
     count: int,
     *,
+    load: Load = "reciprocal",
     inertia: Inertia = "full",
     tolerance: float = 1e-9,
     progress: Progress = lambda part: None,
@@ -209,7 +210,8 @@ def transient(
     Raises InputError for a run that diverges, and for large rotations that a second run does not confirm.
     """
     links: Links = "stretching" if inertia == "elastic" else "rigid"
-    system = build_system(beam, count, forces, frequency_hz, axial_inertia=inertia != "transverse", links=links)
+    settings: dict[str, Any] = {"load": load, "axial_inertia": inertia != "transverse", "links": links}
+    system = build_system(beam, count, forces, frequency_hz, **settings)
     return from_rest(system, np.asarray(times, dtype=float), tolerance=tolerance, progress=progress)
 
 
@@ -228,19 +230,24 @@ def departure(
     count: int,
     *,
     x: float | None = None,
+    load: Load = "lever",
     inertia: Inertia = "full",
     progress: Progress = lambda part: None,
 ) -> Departure:
-    """Effect of axial inertia on the deflection at x (default: mid-span) from rest. Raises InputError at a node."""
+    """Effect of axial inertia on the deflection at x (default: mid-span) from rest. Raises InputError at a node.
+
+    Of the links of both chains.
+    """
     x = 0.5 * beam.length if x is None else x
     times = np.linspace(0.0, duration, max(1001, ceil(40 * frequency_hz * duration) + 1))
-    system = build_system(beam, count, forces, frequency_hz)
+    system = build_system(beam, count, forces, frequency_hz, load=load)
     linear = linear_deflection(system, times, x)
     largest = max(abs(load.force[1]) for load in system.loads)
     if not rms(linear) > NODE * largest / (system.masses.sum() * (2.0 * pi * frequency_hz) ** 2):
         raise InputError(f"x = {x!r}: these forces do not move the beam at this position, give another")
-    motion = transient(beam, forces, frequency_hz, times, count, inertia=inertia, tolerance=1e-10, progress=progress)
-    gap = motion.deflection([x])[:, 0] - linear
+    settings: dict[str, Any] = {"load": load, "inertia": inertia, "progress": progress}
+    motion = transient(beam, forces, frequency_hz, times, count, **settings, tolerance=1e-10)
+    gap = motion.deflection([x], reading="links")[:, 0] - linear
     return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear))
 
 
@@ -251,6 +258,7 @@ def departure_over_beam(
     duration: float,
     count: int,
     *,
+    load: Load = "lever",
     inertia: Inertia = "full",
     progress: Progress = lambda part: None,
 ) -> float:
@@ -261,10 +269,10 @@ def departure_over_beam(
     gaps, lines, times = [], [], np.array([0.0, duration])
     for sign, shift in product((1.0, -1.0), START_PHASES):
         drive = [structs.replace(force, phase_deg=sign * force.phase_deg + shift) for force in forces]
-        system = build_system(beam, count, drive, frequency_hz)
+        system = build_system(beam, count, drive, frequency_hz, load=load)
         lines.append(linear_deflection(system, times, system.nodes[1:-1])[-1])
-        motion = transient(beam, drive, frequency_hz, times, count, inertia=inertia, progress=progress)
-        gaps.append(motion.deflection(system.nodes[1:-1].tolist())[-1] - lines[-1])
+        motion = transient(beam, drive, frequency_hz, times, count, load=load, inertia=inertia, progress=progress)
+        gaps.append(motion.deflection(system.nodes[1:-1].tolist(), reading="links")[-1] - lines[-1])
     return rms(np.array(gaps)) / rms(np.array(lines))
 
 

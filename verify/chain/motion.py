@@ -18,7 +18,9 @@ from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
+from verify.options import ChainReading
 from verify.segments.chain import Motions, link_mass, plain_factors
+from verify.segments.reading import contact_line
 from verify.validation import check_number
 
 if TYPE_CHECKING:
@@ -53,11 +55,19 @@ class ChainMotion(ABC):
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), rad."""
 
-    def deflection(self, x: Sequence[float]) -> Array:
-        """Deflection of material points at x of the straight chain, on their links, (n, len(x)), m."""
+    def deflection(self, x: Sequence[float], *, reading: ChainReading = "corrected") -> Array:
+        """Deflection at x of the straight chain, (n, len(x)), m. Raises InputError for positions off the chain.
+
+        `reading`: "corrected", the contact line of `SegmentModel` and sliders through the corrected joints, or "links",
+        material points of the straight links.
+        """
         columns, heights = [], self.joints()[..., 1]
         for position in x:
             check_number("x", position, "metres, on the chain", at_least=0, at_most=self.system.length * (1.0 + 1e-12))
+        if reading == "corrected":
+            line = contact_line(straight_chain(self.system), heights)
+            return np.asarray(line(np.minimum(x, self.system.length)))
+        for position in x:
             link, at = link_at(self.system, position)
             share = at / self.system.lengths[link - 1]
             columns.append((1.0 - share) * heights[:, link - 1] + share * heights[:, link])

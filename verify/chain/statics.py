@@ -13,6 +13,7 @@ import numpy as np
 from msgspec import Struct, structs
 
 from verify.arrays import Array
+from verify.blas import one_blas_thread
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
@@ -227,6 +228,7 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
         return self.beam.length - float(self.joints[-1, 0])
 
 
+@one_blas_thread()
 def bend(
     beam: Beam,
     count: int,

@@ -8,6 +8,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
+from verify.blas import one_blas_thread
 from verify.dynamics.excitation import check_damping, modal_rows
 from verify.dynamics.linear_system import basis_of
 from verify.dynamics.result import EndState
@@ -64,6 +65,7 @@ class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """Method of the modes; corners of the initial shape."""
 
 
+@one_blas_thread()
 def free_vibration(
     beam: Beam,
     shape: Shape | None,

@@ -7,6 +7,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
+from verify.blas import one_blas_thread
 from verify.dynamics.excitation import check_no_resonance
 from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Stage, basis_of, stages_from_rest, steady_beam, steady_stage
@@ -25,6 +26,7 @@ CLOSED_FORM_ROWS = 2000
 Progress = Callable[[float], None]
 
 
+@one_blas_thread()
 def simulate(
     beam: Beam,
     forces: Loads,

@@ -166,7 +166,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if request.step is not None:
             z = self._initial(self._contacts(), loaded=False)
             resolved = step_control.unresolved(self.stages, z, request.beam.length, dt) <= step_control.UNRESOLVED
-        notes = step_control.check_energy(motion.energy, dt, request.frequency_hz, request.feet, resolved)
+        notes = step_control.check_energy(motion, request.frequency_hz, request.feet, resolved)
         if statistics.unconverged:
             notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
         return replace(motion, notes=(*motion.notes, *notes))

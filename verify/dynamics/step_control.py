@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.arrays import ComplexArray
 from verify.dynamics.linear_system import Stage
-from verify.dynamics.result import EnergyBalance, Motion
+from verify.dynamics.result import Motion
 from verify.errors import InputError
 
 UNRESOLVED = 1e-4
@@ -27,6 +27,8 @@ COMPARED = 16
 """Least number of samples for the comparison of two runs, which may coincide at a single one."""
 MOST_GAIN = 0.01
 """Tolerance of created energy and of the residual of the balance, relative to all energy exchanged."""
+ROUNDINGS = 8.0
+"""Rounding of the works of a step, in units of that of the elastic energy of contact: up to 1.1 of a clasp at rest."""
 
 
 def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: float) -> float:
@@ -100,24 +102,44 @@ def change(coarse: Motion, fine: Motion) -> float:
     return max(one / of if of else 0.0 if not one else inf for one, of in pairs)
 
 
-def check_energy(energy: EnergyBalance, dt: float, frequency_hz: float, feet: bool, resolved: bool) -> tuple[str, ...]:
+def exchanged(motion: Motion) -> float:
+    """Scale of the energy exchanged in a run, J; at least that at which the rounding of the contact reaches MOST_GAIN.
+
+    Springs under constant force do work in every step that adds up to zero but for its rounding.
+    """
+    energy = motion.energy
+    assert energy is not None
+    works = (energy.drive_work, energy.tangential_work, energy.normal_work, energy.load_work, energy.elastic)
+    size = max(abs(work) for work in works) + abs(energy.friction_loss) + abs(energy.slider) + energy.initial
+    sliders = motion.slider if isinstance(motion.slider, tuple) else (motion.slider,)
+    preloaded = sum(
+        0.5 * slider.static_normal_force(foot) ** 2 / slider.contact.across(foot.length)
+        for slider in sliders
+        if slider and slider.contact and not slider.contact.hard
+        for foot in slider.feet
+    )
+    rounding = ROUNDINGS * np.finfo(float).eps * motion.statistics.steps * preloaded
+    return float(np.maximum(size, rounding / MOST_GAIN))  # not a number where the run is not
+
+
+def check_energy(motion: Motion, frequency_hz: float, feet: bool, resolved: bool) -> tuple[str, ...]:
     """Raise InputError if friction creates, or the balance misses, more than 1 % of the energy exchanged.
 
     Notes report the residual of feet, whose springs are of order 2 in the step, and of a beam with unresolved motion:
     modes advance exactly, but the work of the drive and the loss in the modes are quadratures.
     """
-    works = (energy.drive_work, energy.tangential_work, energy.normal_work, energy.load_work, energy.elastic)
-    exchanged = max(abs(work) for work in works) + abs(energy.friction_loss) + abs(energy.slider) + energy.initial
-    if not np.isfinite(exchanged):
+    energy, dt, scale = motion.energy, motion.statistics.step_s, exchanged(motion)
+    assert energy is not None
+    if not np.isfinite(scale):
         raise InputError(f"step = {dt:.3g} s: the energy overflows; give smaller forces or a lighter slider")
     rest = energy.residual if resolved else energy.slider_residual
     missed = max(-energy.friction_loss, energy.created, 0.0 if feet else abs(rest))
-    if missed > MOST_GAIN * exchanged > 0.0:
+    if missed > MOST_GAIN * scale > 0.0:
         raise InputError(
-            f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {exchanged:.3g} J exchanged; give a step "
+            f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {scale:.3g} J exchanged; give a step "
             f"of at most {0.25 * dt:.2g} s (steps_per_period = {ceil(4.0 / (dt * frequency_hz))})"
         )
-    share = abs(energy.residual) / exchanged if exchanged else 0.0
+    share = abs(energy.residual) / scale if scale else 0.0
     what = "not converged, the energy balance" if feet or resolved else "does not resolve the drive, its work"
     note = f"step: {what} misses {100.0 * share:.2g} % of the energy exchanged"
     return (note,) * (share > MOST_GAIN)

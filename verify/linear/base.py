@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from verify.arrays import ComplexArray
+from verify.blas import one_blas_thread
 from verify.errors import InputError
 from verify.linear.field import HarmonicField, wavenumber
 from verify.linear.modes import Modes
@@ -19,6 +20,8 @@ from verify.validation import as_tuple, check_choice, check_integer, check_type
 Devices: TypeAlias = Device | Sequence[Device]
 """One device, or several."""
 
+VERBS = ("modes", "harmonic", "imposed", "receptance", "time_basis", "buckling_load")
+"""Methods of a model that compute."""
 _NEEDS = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 
 
@@ -26,7 +29,7 @@ class BeamModel(ABC):
     """A model of one beam. Subclasses are frozen dataclasses: `beam`, the number of parts if any, then settings.
 
     Another package registers a model by `MODELS.register(cls)` or an entry point of the group `verify.models`. A method
-    that a model does not override raises InputError.
+    that a model does not override raises InputError. The `VERBS` of every model run with one thread of BLAS.
     """
 
     name: ClassVar[str]
@@ -53,8 +56,11 @@ class BeamModel(ABC):
     theory: str = "euler-bernoulli"
 
     def __init_subclass__(cls) -> None:
-        """The default title is the name."""
+        """The default title is the name; methods that compute have one thread of BLAS."""
         cls.title = cls.title or getattr(cls, "name", "")
+        for verb in VERBS:
+            if verb in vars(cls):
+                setattr(cls, verb, one_blas_thread()(vars(cls)[verb]))
 
     @classmethod
     def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":

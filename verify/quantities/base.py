@@ -20,6 +20,7 @@ import msgspec
 from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket
+from verify.blas import one_blas_thread
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.formatting import with_error
@@ -135,6 +136,7 @@ class Quantity:
         units = [UNITS[value] for value in values.values() if isinstance(value, str) and value in UNITS]
         return units[0] if units and " or " in self.unit else self.unit
 
+    @one_blas_thread()
     def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
         """The value for arguments that are plain data. Raises InputError."""
         bound = self.bind(arguments)

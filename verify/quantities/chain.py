@@ -32,6 +32,7 @@ Reading = Annotated[
     Literal["end", "rms", "beam"],
     Meta(description="end: at mid-span; rms: until then; beam: rms over joints, start phases and both directions"),
 ]
+ChainLoad = Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")]
 BEAM = ("beam",)
 
 
@@ -121,24 +122,43 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 @quantity("chain.transient_deflection", unit="m")
-def transient_deflection(scene: Scene, cache: "SolutionCache", run: FromRest, *, x: Place) -> float:
+def transient_deflection(
+    scene: Scene,
+    cache: "SolutionCache",
+    run: FromRest,
+    *,
+    x: Place,
+    load: ChainLoad = "reciprocal",
+    reading: Annotated[
+        options.ChainReading, Meta(description="corrected: spline as on the linear chain; links: straight links")
+    ] = "corrected",
+) -> float:
     """Deflection of the nonlinear chain at x after `time` from rest under the scene's forces."""
     from verify.chain.benchmarks import transient
 
     forces, hertz, time = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    motion = transient(scene.beam, forces, hertz, [time], run.segments, progress=cache.progress)
-    return float(motion.deflection([x])[0, 0])
+    motion = transient(scene.beam, forces, hertz, [time], run.segments, load=load, progress=cache.progress)
+    return float(motion.deflection([x], reading=reading)[0, 0])
 
 
 @quantity("chain.axial_departure", unit="1")
 def axial_departure(
-    scene: Scene, cache: "SolutionCache", run: FromRest, *, inertia: Inertia = "full", of: Reading = "end"
+    scene: Scene,
+    cache: "SolutionCache",
+    run: FromRest,
+    *,
+    load: ChainLoad = "lever",
+    inertia: Inertia = "full",
+    of: Reading = "end",
 ) -> float:
-    """Deflection of the nonlinear chain less that of the linear one from rest, at mid-span or all joints, relative."""
+    """Deflection of the nonlinear chain less that of the linear one from rest, at mid-span or all joints, relative.
+
+    Both are read on their straight links.
+    """
     from verify.chain.benchmarks import departure, departure_over_beam
 
     drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    settings: dict[str, Any] = {"inertia": inertia, "progress": cache.progress}
+    settings: dict[str, Any] = {"load": load, "inertia": inertia, "progress": cache.progress}
     if of == "beam":
         return departure_over_beam(scene.beam, *drive, run.segments, **settings)
     return float(getattr(departure(scene.beam, *drive, run.segments, **settings), of))
@@ -149,9 +169,7 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
 
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: axial stiffness EA / l")] = "rigid"
-    load: Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")] = (
-        "reciprocal"
-    )
+    load: ChainLoad = "reciprocal"
     joint_dashpot: Annotated[float, Meta(ge=0, description="dashpot of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None
     soft_start_periods: SoftStart | None = None
@@ -198,4 +216,6 @@ def slider_imbalance(scene: Scene, cache: "SolutionCache", by: OnChain, slider: 
     """Residual of the slider's energy balance on the nonlinear chain, over the friction loss."""
     energy = by.run(scene, cache, slider).energy
     assert energy is not None
+    if not energy.friction_loss:
+        raise InputError("slider.mu: friction dissipates nothing in this run, give another slider or a longer duration")
     return abs(energy.slider_residual) / energy.friction_loss

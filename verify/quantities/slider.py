@@ -56,10 +56,9 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
     step: Annotated[float, Meta(gt=0, description="time step of the slider, s; default: automatic")] | None = None
 
     def of(self, scene: Scene) -> Slider:
-        """The scene's slider with these parameters. Raises InputError for no slider, or one with [slider.contact]."""
+        """The scene's slider with these parameters. Raises InputError for no slider, and parameters it contradicts."""
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
-        scene.slider.check_bilateral()
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
@@ -207,7 +206,9 @@ def energy(
 def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
     """Residual of the energy balance of beam and slider in a run from rest, over the work of the forces."""
     balance = _energy_balance(scene, cache, by, slider)
-    return abs(balance.residual) / balance.drive_work
+    if not balance.drive_work:
+        raise InputError("drive.force does no work in this run: give it an amplitude, or measure slider.energy")
+    return abs(balance.residual / balance.drive_work)
 
 
 @quantity("slider.coupling_size", unit="1")

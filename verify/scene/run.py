@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
+from verify.blas import one_blas_thread
 from verify.errors import InputError
 from verify.scene.gates import GateResult, run_gate
 from verify.scene.load import load_scene
@@ -86,6 +87,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return Verdict(level="trusted", headline=headline, margins=found.margins)
 
 
+@one_blas_thread()
 def run_scene(
     scene: Scene | str | Path, progress: Progress = lambda step: None, overrides: Sequence[str] = ()
 ) -> RunResult:
@@ -138,8 +140,9 @@ def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
     running = [name for name, _ in studies_of(loaded)]
     rows += [PlanRow(name, "study", True) for name in running]
-    absent = {name: "[[claim]]" if name == "claims" else f"[{name}]" for name in STUDIES if name not in running}
-    rows += [PlanRow(name, "study", False, f"no {section} in the scene") for name, section in absent.items()]
+    absent = {name: f"no {'[[claim]]' if name == 'claims' else f'[{name}]'} in the scene" for name in STUDIES}
+    absent |= dict.fromkeys(loaded.studies, "settings of quantities in time: the study needs [slider]")
+    rows += [PlanRow(name, "study", False, absent[name]) for name in STUDIES if name not in running]
     return loaded, rows
 
 

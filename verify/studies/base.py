@@ -55,10 +55,10 @@ def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
     """(name, study) of the scene's sections and of the implied ones, in the order of `STUDIES`.
 
     [[claim]] implies `claims`, a [drive] with two forces `wave` where it runs with its defaults. [motion] without a
-    slider that stays on the beam has settings for quantities in time and is no study.
+    slider has settings for quantities in time and is no study.
     """
     found: dict[str, Study] = dict(scene.studies)
-    if scene.slider is None or scene.slider.contact is not None:
+    if scene.slider is None:
         found.pop("motion", None)
     if scene.claim:
         found.setdefault("claims", STUDIES["claims"]())
