@@ -94,7 +94,7 @@ def solve(
                     more = set_normal(
                         i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
                     )
-                    changed, largest = max(changed, more), max(largest, touch[lay.NORMAL])
+                    changed, largest = max(changed, more), max(largest, abs(touch[lay.NORMAL]))
                 if alone:
                     continue
                 force = friction_force(i, dt, codes, slider, points[i], touch, shapes, response, spans)

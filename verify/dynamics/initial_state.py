@@ -61,14 +61,14 @@ def _between(contacts: Contacts) -> BoolArray:
 
 
 def _holding(contacts: Contacts, normal: Array, slope: Array) -> Array:
-    """Friction on sliders at rest, N: what holds them, or kinetic beyond the static limit; 0 at a prescribed speed."""
+    """Coulomb friction on sliders at rest, N: what holds them, or kinetic beyond the static limit; else none."""
     slider = contacts.indices[:, lay.OF_SLIDER]
     rows, total = contacts.sliders, np.bincount(slider, normal)
     pull = rows[:, lay.EXTERNAL_FORCE].copy()
     if contacts.following:
         downhill = contacts.gravity * contacts.points[:, lay.INERTIA] * slope
         pull -= np.bincount(slider, downhill)
-    pull[(rows[:, lay.INVERSE_MASS] == 0.0) | (rows[:, lay.V] != 0.0)] = 0.0
+    pull[(rows[:, lay.INVERSE_MASS] == 0.0) | (rows[:, lay.V] != 0.0) | (rows[:, lay.STEEPNESS] > 0.0)] = 0.0
     static, kinetic = rows[:, lay.MU_STATIC] * total, rows[:, lay.MU] * total
     held = np.where(abs(pull) <= static, pull, np.clip(pull, -kinetic, kinetic))
     return np.asarray(-(held / np.where(total > 0.0, total, 1.0))[slider] * normal)
