@@ -64,10 +64,14 @@ class DenseModel:
         _, vectors = eigh(self.reduced(self.bending + self.rest), self.reduced(self.mass))
         every = np.zeros((len(self.mass), len(self.free)))
         every[self.free] = vectors
-        energy = self.rigidity @ (self.bend @ every) ** 2 + np.sum(every * (self.rest @ every), axis=0)
-        values = energy / np.sum(every * (self.mass @ every), axis=0)
+        values = self.squares(every)
         values[: self.beam.rigid_motions] = 0.0
         return values, every
+
+    def squares(self, vectors: Array) -> Array:
+        """Rayleigh quotients omega^2 of vectors in columns."""
+        energy = self.rigidity @ (self.bend @ vectors) ** 2 + np.sum(vectors * (self.rest @ vectors), axis=0)
+        return np.asarray(energy / np.sum(vectors * (self.mass @ vectors), axis=0))
 
     def frequencies_hz(self, n_modes: int) -> Array:
         """The first elastic frequencies, Hz."""

@@ -27,8 +27,8 @@ SINGULAR, INVOLVED = 1e5, 0.05
 """Condition of the Jacobian with columns of unit length, above which it is singular; least component of a singular
 direction, over its largest, in relative changes, that involves a parameter."""
 DOUBLINGS, END, LAGS, FEWEST = 12, 1e-7, 8, 24
-"""Steps outwards of a profile; tolerance of its ends, in such steps: below it is the rounding of the least squares; lags
-of the test of white residuals, and its least number of residuals."""
+"""Steps outwards of a profile; tolerance of its ends, in such steps: below it is the rounding of the least squares;
+lags of the test of white residuals, and its least number of residuals."""
 LARGE = "the residuals are larger than the noise, the model, the start or the noise is wrong"
 UNLIKELY = "the residuals are above 10 %, the model or the start is wrong; give the noise if the data are that rough"
 COLOURED = "the residuals are not white, the model is incomplete and the intervals are too short"
