@@ -77,7 +77,7 @@ def test_member_is_identified(name):
     beam, hertz, count, expected = MEMBERS[name]
     result = compared(beam, hertz, count=count, within=1.0)
     assert best(result, "mass", "wall", "order") == expected
-    assert best(result, "rms")[0] < 1e-9
+    assert best(result, "rms")[0] < 1e-13
     assert result.data["best"]["fault"]["kind"] == "none"
     assert result.data["passed"]
     assert best(result, "joints")[0] == (name if beam is STEPPED else "series")

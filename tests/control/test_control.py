@@ -47,9 +47,9 @@ def test_the_sampled_loop_equals_python_control(delay, position_gain):
     a = [[0.0, 1.0, 0.0], [0.0, -1.0 / SLOW, GAIN / SLOW], [0.0, 0.0, -1.0 / FAST]]
     plant = control.ss(a, [[0.0], [0.0], [1.0 / FAST]], np.eye(3)[:2], 0.0).sample(h, "zoh")
     law = control.tf([kp, ki * h - kp], [1.0, -1.0], h) * control.tf([1.0], [1.0] + delay * [0.0], h)
-    closed = control.feedback(
-        plant * control.ss(law), control.ss([], [], [], [[position_gain, 1.0]], h)
-    )  # e = k (x* - x) - v, or v* - v
+    forward = plant * control.ss(law)
+    back = forward.B @ [[position_gain, 1.0]] @ forward.C  # e = k (x* - x) - v, or v* - v
+    closed = control.ss(forward.A - back, forward.B, forward.C, 0.0, h)
     _, out = control.step_response(closed * (position_gain or 1.0), response.times)
     assert response.controlled == pytest.approx(target * out[0 if position_gain else 1].ravel(), abs=1e-10 * target)
 

@@ -6,8 +6,7 @@ from scipy.linalg import eigh
 from tests.reference.dense import Elements, Links
 
 
-def hertz(stiffness, mass, free):
-    squares = eigh(stiffness[np.ix_(free, free)], mass[np.ix_(free, free)], eigvals_only=True)
+def hertz(squares):
     return np.sqrt(abs(squares)) / (2 * np.pi)
 
 
@@ -21,21 +20,22 @@ def lumped_rod(beam, n):
     chain = links(beam, n)
     masses = np.full(n + 1, beam.mass_per_length * beam.length / n)
     masses[[0, n]] /= 2
-    return hertz(chain.bending, np.diag(masses), chain.free)
+    chain.mass = np.diag(masses)
+    return hertz(chain.modes[0])
 
 
 def rigid_links(beam, n, wall=2.0):
     """Links with their own inertia."""
-    chain = links(beam, n, wall)
-    return hertz(chain.bending, chain.mass, chain.free)
+    return hertz(links(beam, n, wall).modes[0])
 
 
 def links_without_inertia(beam, n):
     """Links with their mass in their middles."""
-    chain, mass = links(beam, n), np.zeros((n + 1, n + 1))
+    chain = links(beam, n)
+    chain.mass = np.zeros((n + 1, n + 1))
     for i in range(n):
-        mass[i : i + 2, i : i + 2] += beam.mass_per_length * beam.length / n / 4
-    return hertz(chain.bending, mass, chain.free)
+        chain.mass[i : i + 2, i : i + 2] += beam.mass_per_length * beam.length / n / 4
+    return hertz(chain.modes[0])
 
 
 def lumped_elements(beam, n, rotary=0.0):
@@ -44,13 +44,16 @@ def lumped_elements(beam, n, rotary=0.0):
     share = np.ones(n + 1)
     share[[0, n]] = 0.5
     m, k, free = beam.mass_per_length * beam.length / n, elements.bending, elements.free
-    masses = np.ravel(m * share[:, None] * [1.0, 2 * rotary * (beam.length / n) ** 2])
+    elements.mass = np.diag(np.ravel(m * share[:, None] * [1.0, 2 * rotary * (beam.length / n) ** 2]))
     if rotary:
-        return hertz(k, np.diag(masses), free)
+        return hertz(elements.modes[0])
     moves, turns = ([i for i in free if i % 2 == parity] for parity in (0, 1))
-    coupling = k[np.ix_(moves, turns)]
-    condensed = k[np.ix_(moves, moves)] - coupling @ np.linalg.solve(k[np.ix_(turns, turns)], coupling.T)
-    return np.sqrt(abs(eigh(condensed, np.diag(masses[moves]), eigvals_only=True))) / (2 * np.pi)
+    rotations = -np.linalg.solve(k[np.ix_(turns, turns)], k[np.ix_(turns, moves)])
+    condensed = k[np.ix_(moves, moves)] + k[np.ix_(moves, turns)] @ rotations
+    vectors = np.zeros((len(k), len(moves)))
+    vectors[moves] = eigh(condensed, elements.mass[np.ix_(moves, moves)])[1]
+    vectors[turns] = rotations @ vectors[moves]
+    return hertz(elements.squares(vectors))
 
 
 def stepped_chain(beam, n, rule):
@@ -66,8 +69,9 @@ def stepped_chain(beam, n, rule):
     k /= e[:-1] * i[1:] * chain.lengths[1:] + e[1:] * i[:-1] * chain.lengths[:-1]
     own = e * i / chain.lengths
     rules = {"outboard": own[1:], "inboard": own[:-1], "mean": (own[1:] + own[:-1]) / 2}
-    chain.compliance[1:] = 1 / rules.get(rule, k)
-    return hertz((chain.bend.T / chain.compliance) @ chain.bend, chain.mass, chain.free)
+    chain.rigidity[1:] = rules.get(rule, k)
+    chain.bending = (chain.bend.T * chain.rigidity) @ chain.bend
+    return hertz(chain.modes[0])
 
 
 def varying_beam(length, stiffness, mass, left, right, crack=None, n=120):
@@ -90,4 +94,5 @@ def varying_beam(length, stiffness, mass, left, right, crack=None, n=120):
         stiff[np.ix_(both, both)] += crack[1] * np.array([[1, -1], [-1, 1]])
     for node, support in ((0, left), (n, right)):
         fixed |= {"free": set(), "pinned": {2 * node}, "clamped": {2 * node, 2 * node + 1}}[support]
-    return hertz(stiff, heavy, [i for i in range(size) if i not in fixed and (crack or i < size - 1)])
+    free = np.array([i for i in range(size) if i not in fixed and (crack or i < size - 1)])
+    return hertz(eigh(stiff[np.ix_(free, free)], heavy[np.ix_(free, free)], eigvals_only=True))

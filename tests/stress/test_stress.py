@@ -65,10 +65,14 @@ def test_a_range_ends_by_refusal_only_where_it_must():
 
 
 def test_result_holds_what_was_measured():
-    found = result(run(select(["tension", "tip-mass"]), jobs=1))
+    outcomes = run(select(["tension", "tip-mass"]), jobs=1)
+    found = result(outcomes)
     data = json.loads(json.dumps(found.to_dict()))
     assert [one["id"] for one in data["checks"]] == ["tension", "tip-mass"]
-    assert data["checks"][1]["baseline"] > 1e-3 > data["checks"][1]["tolerance"] > data["checks"][1]["worst"]
+    for outcome, one in zip(outcomes, data["checks"], strict=True):
+        assert one["worst"] == outcome.worst <= one["tolerance"] == registry()[outcome.id].tolerance
+    assert data["checks"][0]["baseline"] is None
+    assert data["checks"][1]["baseline"] == max(error for _, error in outcomes[1].baseline)
     assert "tip-mass" in found.tables[0].csv()
 
 

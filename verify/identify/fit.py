@@ -26,8 +26,9 @@ residuals, which are as large where the fit is wrong."""
 SINGULAR, INVOLVED = 1e5, 0.05
 """Condition of the Jacobian with columns of unit length, above which it is singular; least component of a singular
 direction, over its largest, in relative changes, that involves a parameter."""
-DOUBLINGS, LAGS, FEWEST = 12, 8, 24
-"""Steps outwards of a profile; lags of the test of white residuals, and its least number of residuals."""
+DOUBLINGS, END, LAGS, FEWEST = 12, 1e-7, 8, 24
+"""Steps outwards of a profile; tolerance of its ends, in such steps: below it is the rounding of the least squares;
+lags of the test of white residuals, and its least number of residuals."""
 LARGE = "the residuals are larger than the noise, the model, the start or the noise is wrong"
 UNLIKELY = "the residuals are above 10 %, the model or the start is wrong; give the noise if the data are that rough"
 COLOURED = "the residuals are not white, the model is incomplete and the intervals are too short"
@@ -170,7 +171,7 @@ class Problem:
             near, far = far, float(theta[i]) + 2.0**k * step
             far = min(far, edge) if step > 0.0 else max(far, edge)
             if far != near and excess(far) > 0.0:
-                root = brentq(excess, near, far, xtol=1e-3 * abs(far - near))
+                root = brentq(excess, near, far, xtol=END * abs(far - near))
                 return float(np.exp(root) if self.logs[i] else root)
         return None
 

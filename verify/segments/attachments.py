@@ -28,7 +28,8 @@ _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments due to distant loads."""
 _FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
 """L_j + L_j''/12 of four joints (columns), L_j cubic Lagrange polynomials: coefficients of s^3, s^2, s, 1 (rows)."""
-_TIE = 1e-10  # added to the target of the alignment; selects one of two equally near solutions
+_ROUNDING = 1e-10
+"""Relative singular value below which the alignment is rounding, as of bodies exactly a link apart."""
 
 
 def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
@@ -137,6 +138,8 @@ def _correct(chain: Chain, places: Array, rows: list[int], lateral: Array, turne
     those of the uncorrected weights solve an orthogonal Procrustes problem (Schoenemann, Psychometrika 31 (1966)).
     """
     n, count, from_right = chain.n_segments, len(places), bool(places.mean() > 0.5 * chain.n_segments)
+    if from_right:  # as in the mirror image
+        places, rows = places[::-1], rows[::-1]
     order, from_end = (-1, n - places) if from_right else (1, places)
     support, elastic = chain.supports[from_right], chain.elastic[from_right]
     start = int(from_end.min()) - _BEFORE
@@ -167,9 +170,7 @@ def _correct(chain: Chain, places: Array, rows: list[int], lateral: Array, turne
     values, vectors = np.linalg.eigh(_mutual_integrals(edge - x) - least.T @ least)
     lacking = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     aligned = basis[:, far:].T @ alone @ lacking
-    aligned += _TIE * abs(aligned).max() * np.eye(*aligned.shape)
-    left, _, right = np.linalg.svd(aligned, full_matrices=False)
-    moments = (least + basis[:, far:] @ (left @ right) @ lacking) / roots
+    moments = (least + basis[:, far:] @ _rotation(aligned) @ lacking) / roots
     # weights from the changes of link forces and of moments
     every = np.zeros((2 * count, before + beyond - first + 2))
     every[:, before:-2] = moments.T
@@ -180,6 +181,15 @@ def _correct(chain: Chain, places: Array, rows: list[int], lateral: Array, turne
     forces[:, columns] = np.diff(changes[:count], prepend=0.0)
     couples[:, columns.start : columns.stop - 1] = changes[count:, :-1]
     lateral[rows], turned[rows] = forces[:, ::order], couples[:, ::order]
+
+
+def _rotation(aligned: Array) -> Array:
+    """Orthonormal columns nearest to `aligned`, where it has no direction nearest to the leading unit vectors."""
+    left, sizes, right = np.linalg.svd(aligned)
+    rank = int((sizes > _ROUNDING * sizes[0]).sum())
+    null, _, other = np.linalg.svd(left[: right.shape[0], rank:].T @ right[rank:].T, full_matrices=False)
+    rotation: Array = left[:, :rank] @ right[:rank] + left[:, rank:] @ null @ other @ right[rank:]
+    return rotation
 
 
 def _far_integrals(x: Array, edge: float, p: Array) -> Array:
