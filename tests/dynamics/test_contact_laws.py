@@ -135,6 +135,61 @@ def test_feet_stay_up_to_the_static_limit_and_slide_under_the_kinetic_one(feet, 
             assert abs(run.displacement) < 1e-10
 
 
+AT_REST = {
+    "point": (Foot(),),
+    "four points": (Foot(length=0.06, points=4),),
+    "level": (Foot(length=0.06, points=4, pitches=False),),
+    "both faces": (Foot(length=0.03, points=3, offset=-0.05), Foot(offset=0.04, face="lower")),
+    "between": (Foot(length=0.06, points=3, mirrored=True),),
+}
+
+
+@pytest.mark.parametrize("feet", AT_REST)
+@pytest.mark.parametrize(("supports", "model"), [("clamped free", "fem"), ("pinned guided", "segment"),
+                                                 ("clamped pinned", "analytic")])  # fmt: skip
+def test_nothing_moves_without_a_drive(feet, supports, model):
+    """A carriage of 2 kg on a strip that sags under it, pulled within its limits; tanh friction creeps under a pull."""
+    beam = Beam(length=1.0, width=0.04, thickness=0.008, youngs_modulus=210e9, density=7850.0, loss_factor=0.01,
+                supports=tuple(supports.split()))  # fmt: skip
+    own = {"mass": 2.0, "mu": 0.2, "position": 0.8, "preload": 30.0, "foot": AT_REST[feet]}
+    own["gravity"] = 0.0 if feet == "between" else 9.81
+    contacts = Contact(stiffness=1e6, damping=20.0), Contact(stiffness=1e6, tangential_stiffness=7e5)
+    for law, contact, pull in (({"law": "tanh"}, 0, 0.0), ({"law": "coulomb"}, 0, -3.1),
+                               ({"law": "coulomb", "mu_static": 0.5}, 1, 7.3)):  # fmt: skip
+        slider = Slider(contact=contacts[contact], external_force=pull, **law, **own)
+        still = PointForce(position=0.5, amplitude=0.0)
+        run = simulate(beam, still, 50.0, 0.05, slider=slider, model=model, count=None if model == "analytic" else 12,
+                       start="rest", samples=26)  # fmt: skip
+        assert run.normal_force == pytest.approx(np.full(26, run.normal_force[0]), rel=1e-6)
+        assert run.friction[1:] == pytest.approx(np.full(25, -pull), abs=2e-3)
+        assert abs(run.travelled).max() < 1e-10
+        assert np.ptp(run.pitch, axis=0).max() < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("points", "mu_static", "micrometres"), [(3, None, -52.035), (3, 0.4, -90.11), (4, None, -45.95), (4, 0.4, -98.84)]
+)
+def test_points_of_a_foot_hold_together_up_to_their_static_limits(points, mu_static, micrometres):
+    """Displacements by `reference.contact.ran` at creeps of 1e-5 and 2e-6 m/s, extrapolated to none: to 0.02 um.
+
+    Static friction of 0.4 N once let go at 0.1 N. Steps of 1/800 and 1/1600 of a period; where static friction makes
+    the default step too long, its doubling shows it.
+    """
+    beam = Beam(length=0.31, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+    forces = PointForce(position=0.05, amplitude=18.0), PointForce(position=0.23, amplitude=12.0, phase_deg=77.0)
+    slider = Slider(mass=0.02, mu=0.1, mu_static=mu_static, law="coulomb", position=0.117, preload=60.0,
+                    contact=Contact(stiffness=1.5e6, damping=8.0), foot=(Foot(length=0.03, points=points),))  # fmt: skip
+    given = {"model": "fem", "count": 4, "slider": slider, "modal_damping": 0.02, "soft_start_periods": 1.0}
+    for steps, band in ((800, 3e-3), (1600, 1e-3)):
+        step = 1.0 / (700.0 * steps)
+        motion = simulate(beam, forces, 700.0, 8.0 / 700.0, start="rest", step=step, samples=3, **given)
+        assert 1e6 * motion.displacement == pytest.approx(micrometres, rel=band)
+        assert motion.statistics.unconverged == 0
+    coarse = simulate(beam, forces, 700.0, 8.0 / 700.0, start="rest", samples=3, **given)
+    error = abs(1e6 * coarse.displacement / micrometres - 1.0)
+    assert error < (0.02 if mu_static is None else 2.0 * coarse.statistics.step_change)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
 def test_an_impact_on_free_modes_from_rest_keeps_momentum_and_restitution(restitution):
     """Flights are parabolas; the surface is that of the modes by DOP853."""

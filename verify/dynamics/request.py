@@ -80,6 +80,13 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return bool(self.sliders) and self.sliders[0].coupling == "two-way"
 
     @property
+    def sticks_in_several_ways(self) -> bool:
+        """Whether static friction above the kinetic one holds several rigid points of feet."""
+        holds = any(slider.mu_static is not None and slider.mu_static > slider.mu for slider in self.sliders)
+        points = [foot.points for slider in self.sliders for foot in slider.feet]
+        return self.feet and holds and sum(points) > 1
+
+    @property
     def gravity(self) -> float:
         """Least normal force over moving mass of the sliders, m/s^2; without sliders standard gravity."""
         return min((slider.effective_gravity for slider in self.sliders), default=GRAVITY)

@@ -132,12 +132,14 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return z
 
     def converged(self, progress: Progress) -> Motion:
-        """The run; for a two-way coupled point slider with automatic step also the change when the step is doubled.
+        """The run; where friction of the slider acts on its own slip, also the change when an automatic step is doubled.
+
+        That is two-way coupled point sliders, and feet that may stick in more than one way.
 
         Raises InputError for a residual of the energy balance above its tolerance.
         """
         request, stages = self.request, self.stages
-        if request.feet or not request.two_way or request.step is not None:
+        if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
             return self._checked(self.run(stages, progress))
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
