@@ -29,29 +29,33 @@ PASSES = 50
 coefficient of friction times the slope of the surface, below a half."""
 
 
-@inline
-def set_normal(
-    i: int, dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
-    shapes: Array, response: Array, couplings: Array,
+@jit(no_cpython_wrapper=True)
+def set_normal_forces(
+    every: bool, dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array,
+    indices: Indices, shapes: Array, response: Array, couplings: Array,
 ) -> float:  # fmt: skip
-    """Set the normal force of point i and what it adds to foot and columns; its change, N."""
-    slider, k, touch = sliders[indices[i, lay.OF_SLIDER]], indices[i, lay.OF_FOOT], contacts[i]
-    normal = normal_force(i, dt, codes, slider, feet, k, points, contacts, shapes, response, couplings)
-    more = normal - touch[lay.NORMAL]
-    touch[lay.NORMAL] = normal
-    if codes[lay.NORMAL_TWO_WAY] > 0 and more != 0.0:
-        respond(i, TRANSVERSE, more, shapes, response)
-    if codes[lay.LAW] == lay.SPRING:
-        foot, push = feet[k], dt * points[i, lay.FACE] * more
-        foot[lay.LIFTED] += push * foot[lay.INVERSE_FOOT_MASS]
-        foot[lay.TURNED] += push * points[i, lay.ARM] * foot[lay.INVERSE_INERTIA]
-    return float(abs(more))
+    """Set the normal forces of points in contact and what they add to feet and columns; largest change, N.
 
-
-@inline
-def depends(i: int, codes: Indices, points: Array) -> bool:
-    """Whether the normal force of point i depends on the forces of the step."""
-    return bool(codes[lay.LAW] == lay.BILATERAL or points[i, lay.DASHPOT] > 0.0)
+    Of every point, or of those whose normal force depends on the forces of the step.
+    """
+    law, largest = codes[lay.LAW], 0.0
+    for i in range(points.shape[0]):
+        point, touch = points[i], contacts[i]
+        depends = every or law == lay.BILATERAL or point[lay.DASHPOT] > 0.0
+        if not depends or (law == lay.SPRING and touch[lay.DEPTH] <= 0.0):
+            continue
+        slider, k = sliders[indices[i, lay.OF_SLIDER]], indices[i, lay.OF_FOOT]
+        normal = normal_force(i, dt, codes, slider, feet, k, points, contacts, shapes, response, couplings)
+        more = normal - touch[lay.NORMAL]
+        touch[lay.NORMAL] = normal
+        if codes[lay.NORMAL_TWO_WAY] > 0 and more != 0.0:
+            respond(i, TRANSVERSE, more, shapes, response)
+        if law == lay.SPRING:
+            foot, push = feet[k], dt * point[lay.FACE] * more
+            foot[lay.LIFTED] += push * foot[lay.INVERSE_FOOT_MASS]
+            foot[lay.TURNED] += push * point[lay.ARM] * foot[lay.INVERSE_INERTIA]
+        largest = max(largest, abs(more))
+    return largest
 
 
 @jit(no_cpython_wrapper=True)
@@ -84,18 +88,14 @@ def solve(
         coupled = coupled or points[i, lay.DASHPOT] > 0.0
     while True:
         for _ in range(SWEEPS):
-            changed = 0.0
             sweeps += 1
-            for i in range(n):
+            changed = set_normal_forces(
+                sweeps == 1, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
+            )
+            largest = max(largest, changed)  # that of the first sweep is the largest force
+            for i in range(0 if alone else n):
                 touch, slider = contacts[i], sliders[indices[i, lay.OF_SLIDER]]
                 if law == lay.SPRING and touch[lay.DEPTH] <= 0.0:
-                    continue
-                if sweeps == 1 or depends(i, codes, points):
-                    more = set_normal(
-                        i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
-                    )
-                    changed, largest = max(changed, more), max(largest, abs(touch[lay.NORMAL]))
-                if alone:
                     continue
                 force = friction_force(i, dt, codes, slider, points[i], touch, shapes, response, spans)
                 more = force - touch[lay.FRICTION]
@@ -112,13 +112,9 @@ def solve(
             changed = solve_active_sets(
                 dt, codes, largest, sliders, points, contacts, indices, shapes, response, spans, block
             )
-            differs = 0.0
-            for i in range(n):
-                if depends(i, codes, points) and not (law == lay.SPRING and contacts[i, lay.DEPTH] <= 0.0):
-                    more = set_normal(
-                        i, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
-                    )
-                    differs = max(differs, more)
+            differs = set_normal_forces(
+                False, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
+            )
             changed = max(changed, differs)
             if differs <= SETTLED * largest:
                 break

@@ -132,7 +132,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return z
 
     def converged(self, progress: Progress) -> Motion:
-        """The run; where friction of the slider acts on its own slip, also the change when an automatic step is doubled.
+        """The run; where friction acts on its own slip, also the change when an automatic step is doubled.
 
         That is two-way coupled point sliders, and feet that may stick in more than one way.
 
