@@ -75,7 +75,7 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
 def _tagged_errors(data: dict[str, Any], tables: dict[str, Any], where: str) -> Iterator[str]:
     """A sentence for every error of a table whose key `kind` selects one of several structs."""
     own, names = data.get("kind"), tuple(tables)
-    if own in tables:
+    if isinstance(own, str) and own in tables:  # a list has no hash
         yield from _errors({key: value for key, value in data.items() if key != "kind"}, tables[own], where)
     elif own is None:
         yield f"{where}.kind is missing: give one of {', '.join(names)}"

@@ -108,6 +108,11 @@ def test_error_sentence_names_field_value_and_remedy(tmp_path, old, new, sentenc
     assert errors(tmp_path, SCENE.replace(old, new, 1)) == sentences
 
 
+def test_a_kind_that_is_no_word_is_not_known(tmp_path):
+    found = errors(tmp_path, SCENE + DRIVE + "[drive.actuator]\nkind = []\n")
+    assert any(sentence.startswith("drive.actuator.kind = [] is not known") for sentence in found)
+
+
 def test_unreadable_files_are_refused(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, tmp_path / "no" / "folder.toml"):
         with pytest.raises(InputError, match="cannot be read"):
