@@ -60,8 +60,8 @@ def law_residual(
 ) -> tuple[float, float, float, float]:
     """Residual of a point's law within its limit of friction, for its mean slip and force: (by force, by slip, value).
 
-    The last value is the force that the law asks for with its own response alone, of any size. The residual of a rigid
-    sticking point is a slip, m/s, all others are forces, N.
+    The last value is the force, N, that meets the law without its limit by the point's own response. The residual of a
+    rigid sticking point is a slip, m/s, all others are forces, N.
     """
     force, normal, steepness = touch[lay.FRICTION], max(touch[lay.NORMAL], 0.0), slider[lay.STEEPNESS]
     kinetic = slider[lay.MU] * normal
@@ -85,6 +85,102 @@ def law_residual(
 
 
 @inline
+def mean_slip(i: int, slider: Array, touch: Array, shapes: Array, response: Array) -> float:
+    """Mean slip of point i in the step under all forces, m/s."""
+    return float(slider[lay.V] + 0.5 * slider[lay.GAINED] - touch[lay.MEAN] - product(i, 0, shapes, response))
+
+
+@inline
+def add_friction(i: int, more: float, dt: float, slider: Array, touch: Array, shapes: Array, response: Array) -> None:
+    """Add to the friction of point i, and what that adds to its slider and to the columns."""
+    touch[lay.FRICTION] += more
+    slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
+    respond(i, 0, more, shapes, response)
+
+
+@inline
+def bounded(slider: Array, touch: Array) -> bool:
+    """Whether the law of a point has limits: Coulomb's, of a point that is pressed on."""
+    return bool(slider[lay.STEEPNESS] == 0.0 and friction_limit(slider, touch) > 0.0)
+
+
+@inline
+def solve_rows(
+    dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
+    response: Array, spans: Array, block: Array,
+) -> None:  # fmt: skip
+    """Changes of all forces, in the last column, at which the residuals of points between their limits vanish.
+
+    The matrix is positive definite up to the scale of its rows: elimination without pivoting.
+    """
+    n = points.shape[0]
+    for i in range(n):
+        touch, row, b = contacts[i], block[i], indices[i, lay.OF_SLIDER]
+        slider, diagonal, slope, miss = sliders[b], 1.0, 0.0, 0.0
+        if spans[i, AT_LIMIT] == 0.0:
+            slip = mean_slip(i, slider, touch, shapes, response)
+            diagonal, slope, miss, _ = law_residual(dt, codes, slip, slider, points[i], touch)
+        for k in range(n):
+            row[k] = 0.5 * slope * dt * slider[lay.INVERSE_MASS] if indices[k, lay.OF_SLIDER] == b else 0.0
+            for j in range(shapes.shape[2] if slope != 0.0 else 0):
+                row[k] += slope * shapes[0, i, j] * shapes[2, k, j]
+        row[i] += diagonal
+        row[n] = -miss
+    for k in range(n):
+        for i in range(n):
+            if i != k:
+                share = block[i, k] / block[k, k]
+                for j in range(k, n + 1):
+                    block[i, j] -= share * block[k, j]
+    for i in range(n):
+        block[i, n] /= block[i, i]
+
+
+@inline
+def step_to_limit(
+    dt: float, sliders: Array, contacts: Array, indices: Indices, shapes: Array, response: Array, spans: Array,
+    block: Array,
+) -> float:  # fmt: skip
+    """Add the changes of forces up to the first limit on the way; the largest one, N, infinite where a limit stops."""
+    n, share, first, side, largest = contacts.shape[0], 1.0, -1, 0.0, 0.0
+    for i in range(n):
+        touch, slider, more = contacts[i], sliders[indices[i, lay.OF_SLIDER]], block[i, n]
+        if spans[i, AT_LIMIT] == 0.0 and bounded(slider, touch):
+            limit = friction_limit(slider, touch)
+            if abs(touch[lay.FRICTION] + share * more) > limit:
+                first, side = i, np.sign(more)
+                share = max((side * limit - touch[lay.FRICTION]) / more, 0.0)
+    for i in range(n):
+        touch, slider, more = contacts[i], sliders[indices[i, lay.OF_SLIDER]], share * block[i, n]
+        if i == first:
+            more = side * friction_limit(slider, touch) - touch[lay.FRICTION]
+            spans[i, AT_LIMIT] = side
+        add_friction(i, more, dt, slider, touch, shapes, response)
+        largest = max(largest, abs(more))
+    return np.inf if first >= 0 else largest
+
+
+@inline
+def release_worst(
+    dt: float, codes: Indices, sliders: Array, points: Array, contacts: Array, indices: Indices, shapes: Array,
+    response: Array, spans: Array,
+) -> bool:  # fmt: skip
+    """Set the slips; whether a point leaves its limit: that whose law asks for the least share of it."""
+    least, leaves = 1.0 - SETTLED, -1
+    for i in range(points.shape[0]):
+        slider, touch = sliders[indices[i, lay.OF_SLIDER]], contacts[i]
+        touch[lay.SLIP] = mean_slip(i, slider, touch, shapes, response)
+        if spans[i, AT_LIMIT] != 0.0:
+            _, _, _, wanted = law_residual(dt, codes, touch[lay.SLIP], slider, points[i], touch)
+            share = spans[i, AT_LIMIT] * wanted / friction_limit(slider, touch)
+            if share < least:
+                least, leaves = share, i
+    if leaves >= 0:
+        spans[leaves, AT_LIMIT] = 0.0
+    return leaves >= 0
+
+
+@inline
 def solve_active_sets(
     dt: float, codes: Indices, largest: float, sliders: Array, points: Array, contacts: Array, indices: Indices,
     shapes: Array, response: Array, spans: Array, block: Array,
@@ -92,75 +188,23 @@ def solve_active_sets(
     """Friction of all points together, which a beam responds to, at given normal forces; change of the last round, N.
 
     With Coulomb's law a strictly convex quadratic program with bounds, whose primal active sets (Nocedal and Wright,
-    Numerical Optimization 2006, sec. 16.5) end after finitely many rounds: a round steps towards zero residuals of all
-    points between their limits up to the first limit on the way; at zero residuals the point that leaves its limit by
-    most is released. Smooth laws are solved by Newton's method in the same rounds.
+    Numerical Optimization 2006, sec. 16.5) end after finitely many rounds. Smooth laws are solved by Newton's method in
+    the same rounds.
     """
     n, changed = points.shape[0], np.inf
-    for i in range(n):  # between the limits
+    for i in range(n):  # start between the limits
         touch, slider = contacts[i], sliders[indices[i, lay.OF_SLIDER]]
-        limit = friction_limit(slider, touch)
-        more = min(max(touch[lay.FRICTION], -limit), limit) - touch[lay.FRICTION]
-        touch[lay.FRICTION] += more
-        slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
-        respond(i, 0, more, shapes, response)
-        bounded = slider[lay.STEEPNESS] == 0.0 and limit > 0.0 and abs(touch[lay.FRICTION]) == limit
-        spans[i, AT_LIMIT] = np.sign(touch[lay.FRICTION]) if bounded else 0.0
+        limit, force = friction_limit(slider, touch), touch[lay.FRICTION]
+        inside = min(max(force, -limit), limit)
+        add_friction(i, inside - force, dt, slider, touch, shapes, response)
+        spans[i, AT_LIMIT] = np.sign(inside) if bounded(slider, touch) and abs(inside) == limit else 0.0
     for _ in range(ROUNDS * n + 20):
-        for i in range(n):  # row i: the law's condition on the changes of all forces
-            touch, row, b = contacts[i], block[i], indices[i, lay.OF_SLIDER]
-            slider, diagonal, slope, miss = sliders[b], 1.0, 0.0, 0.0
-            if spans[i, AT_LIMIT] == 0.0:
-                slip = slider[lay.V] + 0.5 * slider[lay.GAINED] - touch[lay.MEAN] - product(i, 0, shapes, response)
-                diagonal, slope, miss, _ = law_residual(dt, codes, slip, slider, points[i], touch)
-            for k in range(n):
-                row[k] = 0.5 * slope * dt * slider[lay.INVERSE_MASS] if indices[k, lay.OF_SLIDER] == b else 0.0
-                for j in range(shapes.shape[2] if slope != 0.0 else 0):
-                    row[k] += slope * shapes[0, i, j] * shapes[2, k, j]
-            row[i] += diagonal
-            row[n] = -miss
-        for k in range(n):  # positive definite up to the scale of its rows: no pivoting
-            for i in range(n):
-                if i != k:
-                    share = block[i, k] / block[k, k]
-                    for j in range(k, n + 1):
-                        block[i, j] -= share * block[k, j]
-        share, first, side = 1.0, -1, 0.0
-        for i in range(n):
-            touch, slider, more = contacts[i], sliders[indices[i, lay.OF_SLIDER]], block[i, n] / block[i, i]
-            limit = friction_limit(slider, touch)
-            bounded = spans[i, AT_LIMIT] == 0.0 and slider[lay.STEEPNESS] == 0.0 and limit > 0.0
-            if bounded and abs(touch[lay.FRICTION] + share * more) > limit:
-                first, side = i, np.sign(more)
-                share = max((side * limit - touch[lay.FRICTION]) / more, 0.0)
-        changed = 0.0
-        for i in range(n):
-            touch, slider, more = contacts[i], sliders[indices[i, lay.OF_SLIDER]], share * block[i, n] / block[i, i]
-            if i == first:
-                more = side * friction_limit(slider, touch) - touch[lay.FRICTION]
-                spans[i, AT_LIMIT] = side
-            touch[lay.FRICTION] += more
-            slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
-            respond(i, 0, more, shapes, response)
-            changed = max(changed, abs(more))
-        if first >= 0:
-            changed = np.inf
-            continue
-        worst, free = SETTLED, -1
-        for i in range(n):
-            slider, touch = sliders[indices[i, lay.OF_SLIDER]], contacts[i]
-            touch[lay.SLIP] = (
-                slider[lay.V] + 0.5 * slider[lay.GAINED] - touch[lay.MEAN] - product(i, 0, shapes, response)
-            )
-            if spans[i, AT_LIMIT] != 0.0:
-                _, _, _, asked = law_residual(dt, codes, touch[lay.SLIP], slider, points[i], touch)
-                inside = 1.0 - spans[i, AT_LIMIT] * asked / friction_limit(slider, touch)
-                if inside > worst:
-                    worst, free = inside, i
-        if free >= 0:
-            spans[free, AT_LIMIT] = 0.0
-        elif changed <= SETTLED * largest:
-            break
+        solve_rows(dt, codes, sliders, points, contacts, indices, shapes, response, spans, block)
+        changed = step_to_limit(dt, sliders, contacts, indices, shapes, response, spans, block)
+        if changed < np.inf:
+            leaves = release_worst(dt, codes, sliders, points, contacts, indices, shapes, response, spans)
+            if not leaves and changed <= SETTLED * largest:
+                break
     for i in range(n):
         sticks = spans[i, AT_LIMIT] == 0.0 and sliders[indices[i, lay.OF_SLIDER], lay.STEEPNESS] == 0.0
         spans[i, 0], spans[i, 3] = 1.0 if sticks else 0.0, 0.0  # without events in the step
