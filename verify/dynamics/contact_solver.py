@@ -112,8 +112,8 @@ def solve(
             changed = solve_active_sets(
                 dt, codes, largest, sliders, points, contacts, indices, shapes, response, spans, block
             )
-            differs = set_normal_forces(
-                False, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
+            differs = set_normal_forces(  # a constant would compile it a second time
+                sweeps == 0, dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings
             )
             changed = max(changed, differs)
             if differs <= SETTLED * largest:
