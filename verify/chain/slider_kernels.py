@@ -14,7 +14,7 @@ from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, march
 from verify.dynamics import layout as lay
 from verify.dynamics.contact_solver import solve
-from verify.dynamics.integrator import add_sums, move, sample, write_events
+from verify.dynamics.integrator import add_sums, sample, update_bodies, write_events
 from verify.dynamics.kinematics import (
     END,
     HALF,
@@ -22,12 +22,12 @@ from verify.dynamics.kinematics import (
     RATE,
     START,
     VALUE,
+    evaluate_surface,
     find_pieces,
-    look,
     set_mean_rates,
     shape_of,
 )
-from verify.dynamics.point_forces import TRANSVERSE, product, respond
+from verify.dynamics.point_forces import TRANSVERSE, add_response, product
 from verify.jit import inline, jit
 
 CORRECTIONS = 20  # largest number of marches of a step before it is not converged
@@ -61,14 +61,16 @@ def read_links(when: int, n: int, y: Array, links: Array, factors: Array) -> Non
 
 
 @inline
-def see(
+def evaluate_chain_surface(
     when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
     local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
 ) -> None:  # fmt: skip
-    """Evaluate the surface under every point (`look`), with the speed of its material along x."""
+    """Evaluate the surface under every point (`evaluate_surface`), with the speed of its material along x."""
     for j in range(stamp.size):
         stamp[j] = -1
-    look(when, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices)
+    evaluate_surface(
+        when, mark, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts, indices
+    )
     m, spring = factors.shape[2] // 2, codes[lay.LAW] == lay.SPRING
     for i in range(points.shape[0]):
         piece, share = indices[i, lay.PIECE], contacts[i, lay.ABOVE_END if when == END else lay.ABOVE]
@@ -185,8 +187,23 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                     feet[f, lay.PITCH] += 0.5 * dt * feet[f, lay.TURN]
                 for when in range(last):
                     if when != HALF and (when == MIDDLE or not spring):
-                        see(when, 4 * step + when, dt, gravity, codes, table, edges, factors, local, stamp, sliders,
-                            feet, points, contacts, indices)  # fmt: skip
+                        evaluate_chain_surface(
+                            when,
+                            4 * step + when,
+                            dt,
+                            gravity,
+                            codes,
+                            table,
+                            edges,
+                            factors,
+                            local,
+                            stamp,
+                            sliders,
+                            feet,
+                            points,
+                            contacts,
+                            indices,
+                        )
                 if two_way:
                     set_shapes(table, edges, points, contacts, indices, shapes)
             probing = False
@@ -194,7 +211,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                 response[j] = 0.0
             for i in range(m if two_way else 0):
                 for s in range(directions):
-                    respond(i, s, forces[i, s], shapes, response)
+                    add_response(i, s, forces[i, s], shapes, response)
             for i in range(m if two_way else 0):  # `solve` adds the response again
                 own = product(i, 0, shapes, response)
                 contacts[i, lay.MEAN] -= own
@@ -224,17 +241,32 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                         balance[lay.DRIVEN] += points[i, lay.WEIGHT] * forces[i, s] * moved
             copy(states[2:], states)
         add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, spans, sums, balance)
-        move(dt, codes, sliders, feet, points, contacts, indices, spans)
+        update_bodies(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(step * dt, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
         if not np.isfinite(sliders[0, lay.V] + factors[END, VALUE, 0]):
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
-            for when in range(1):  # START; as a constant argument numba would compile `see` once more for it
+            for when in range(1):  # START; a constant argument would be compiled once more
                 read_links(when, n, states[0 if two_way else row + 2], links, factors)
                 if not spring and find_pieces(0.0, edges, sliders, points, indices):
-                    see(when, 4 * step + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet,
-                        points, contacts, indices)  # fmt: skip
+                    evaluate_chain_surface(
+                        when,
+                        4 * step + 4,
+                        dt,
+                        gravity,
+                        codes,
+                        table,
+                        edges,
+                        factors,
+                        local,
+                        stamp,
+                        sliders,
+                        feet,
+                        points,
+                        contacts,
+                        indices,
+                    )
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE

@@ -10,9 +10,9 @@ from verify.dynamics.point_forces import (
     HOLDS,
     LETS_GO,
     SLIDES,
+    add_response,
     friction_limit,
     product,
-    respond,
     slip_at_start,
     sticking_slip,
 )
@@ -95,7 +95,7 @@ def add_friction(i: int, more: float, dt: float, slider: Array, touch: Array, sh
     """Add to the friction of point i, and what that adds to its slider and to the columns."""
     touch[lay.FRICTION] += more
     slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
-    respond(i, 0, more, shapes, response)
+    add_response(i, 0, more, shapes, response)
 
 
 @inline

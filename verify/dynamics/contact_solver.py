@@ -7,16 +7,16 @@ fixed; where the sweeps do not converge, the friction of all points is solved to
 from verify.arrays import Array, Indices
 from verify.dynamics import layout as lay
 from verify.dynamics.active_sets import SETTLED, revise_limits, solve_active_sets
-from verify.dynamics.one_way_friction import slide
+from verify.dynamics.one_way_friction import solve_one_way_friction
 from verify.dynamics.point_forces import (
     HOLDS,
     SLIDES,
     TRANSVERSE,
+    add_response,
     friction_force,
     normal_force,
     own_product,
     product,
-    respond,
 )
 from verify.jit import FAST, inline, jit
 
@@ -49,7 +49,7 @@ def set_normal_forces(
         more = normal - touch[lay.NORMAL]
         touch[lay.NORMAL] = normal
         if codes[lay.NORMAL_TWO_WAY] > 0 and more != 0.0:
-            respond(i, TRANSVERSE, more, shapes, response)
+            add_response(i, TRANSVERSE, more, shapes, response)
         if law == lay.SPRING:
             foot, push = feet[k], dt * point[lay.FACE] * more
             foot[lay.LIFTED] += push * foot[lay.INVERSE_FOOT_MASS]
@@ -103,7 +103,7 @@ def solve(
                     touch[lay.FRICTION] = force
                     slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
                     if two_way:
-                        respond(i, 0, more, shapes, response)
+                        add_response(i, 0, more, shapes, response)
                     changed = max(changed, abs(more))
             if changed <= TOLERANCE * largest or not coupled:
                 changed = 0.0
@@ -123,7 +123,7 @@ def solve(
     balance[lay.SWEEPS] += sweeps
     for i in range(n if alone else 0):
         if i + 1 == n or indices[i + 1, lay.OF_SLIDER] != indices[i, lay.OF_SLIDER]:
-            changed = max(changed, slide(i, dt, sliders, points, contacts, indices, spans))
+            changed = max(changed, solve_one_way_friction(i, dt, sliders, points, contacts, indices, spans))
     balance[lay.UNCONVERGED] += 1.0 if changed > 1e-9 * largest else 0.0
     balance[lay.RESIDUAL] = max(balance[lay.RESIDUAL], changed)
     for i in range(n):

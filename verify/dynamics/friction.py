@@ -1,8 +1,8 @@
 """Compiled friction laws: the force on a slider in one step, with its own response and the surface's solved exactly.
 
-The relative speed r = v - s of a point follows r' = ease f - a in units of one step: f is the friction force on the
-slider, `a` the gain of the surface over a slider without friction, `ease` = dt/m + 2 w with the mean response w of the
-surface to a unit force.
+The relative speed r = v - s of a point follows r' = compliance f - a in units of one step: f is the friction force on
+the slider, `a` the gain of the surface over a slider without friction, `compliance` = dt/m + 2 w with the `mobility`
+dt/m of the slider and the mean response w of the surface to a unit force.
 """
 
 import numpy as np
@@ -91,10 +91,10 @@ def ln_cosh(x: float) -> float:
 
 
 @inline
-def tanh_force(r: float, a: float, ease: float, most: float, steepness: float) -> float:
+def tanh_force(r: float, a: float, compliance: float, most: float, steepness: float) -> float:
     """Mean friction in the step by the tanh law: the closed form, or the mean over a given sweep without response."""
-    if ease * most * steepness > 1e-9:
-        return float(tanh_change(r, a, ease * most, steepness) / ease)
+    if compliance * most * steepness > 1e-9:
+        return float(tanh_change(r, a, compliance * most, steepness) / compliance)
     half, middle = 0.5 * steepness * abs(a), steepness * (r - 0.5 * a)
     if half < 0.1:
         t = np.tanh(middle)
@@ -140,7 +140,7 @@ def coulomb_span(
 
 @inline
 def coulomb_force(
-    r: float, a0: float, a1: float, ease: float, kinetic: float, static: float, stuck: bool, work: Array
+    r: float, a0: float, a1: float, compliance: float, kinetic: float, static: float, stuck: bool, work: Array
 ) -> float:
     """Mean friction in the step by Coulomb's law, from event to event.
 
@@ -149,17 +149,17 @@ def coulomb_force(
     its kind.
     """
     force, used, moved, n = 0.0, 0.0, 0.0, 0
-    if abs(r) <= 1e-9 * ease * kinetic and abs(a0) <= ease * static:
+    if abs(r) <= 1e-9 * compliance * kinetic and abs(a0) <= compliance * static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(SPANS):
         slips, before, start = not stuck, r, a0 + (a1 - a0) * used
-        span, r, stuck, event = coulomb_span(r, start, a1, ease * kinetic, ease * static, 1.0 - used, stuck)
+        span, r, stuck, event = coulomb_span(r, start, a1, compliance * kinetic, compliance * static, 1.0 - used, stuck)
         if slips:  # r is a parabola
             side = np.sign(before) if before != 0.0 else np.sign(r)
             force -= side * kinetic * span
             moved += 0.5 * span * (before + r) + (a1 - a0) * span * span * span / 12.0
-        elif ease > 0.0:
-            force += (start + 0.5 * (a1 - a0) * span) * span / ease
+        elif compliance > 0.0:
+            force += (start + 0.5 * (a1 - a0) * span) * span / compliance
         used += span
         if event != 0.0:
             work[4 + 2 * n], work[5 + 2 * n] = used, event
@@ -172,7 +172,7 @@ def coulomb_force(
 
 
 @inline
-def held_force(needed: float, kinetic: float, static: float, last: float, ease: float, work: Array) -> float:
+def held_force(needed: float, kinetic: float, static: float, last: float, compliance: float, work: Array) -> float:
     """Mean friction in the step of a point that sticks to a surface with a response, from the force that it `needed`.
 
     A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. It
@@ -184,7 +184,7 @@ def held_force(needed: float, kinetic: float, static: float, last: float, ease: 
         return needed
     stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
     mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
-    work[0], work[2], work[3] = 0.0, -sign * (size - mean) * ease, 1.0
+    work[0], work[2], work[3] = 0.0, -sign * (size - mean) * compliance, 1.0
     work[1] = 0.5 * (1.0 - stays) * work[2]
     work[4], work[5] = stays, lay.SLIPS
     return float(sign * mean)
@@ -192,14 +192,14 @@ def held_force(needed: float, kinetic: float, static: float, last: float, ease: 
 
 @inline
 def line_force(
-    r: float, end: float, light: float, kinetic: float, static: float, steepness: float, late: float, stuck: bool,
+    r: float, end: float, mobility: float, kinetic: float, static: float, steepness: float, late: float, stuck: bool,
     rounding: float,
 ) -> tuple[float, float, float]:  # fmt: skip
     """(Least, largest mean friction, its derivative) of a point whose relative speed goes from r to `end` in the step.
 
-    Both forces differ where the point is at rest at the end: they bound what sticking takes. `light` = dt/m bends the
-    line at a reversal by the point's own force, so that r' = light f - a as in `coulomb_span`. Tanh: the mean over the
-    line; a share `late` of the force at its end damps a slider that friction stops within a step.
+    Both forces differ where the point is at rest at the end: they bound what sticking takes. `mobility` bends the
+    line at a reversal by the point's own force, so that r' = mobility f - a as in `coulomb_span`. Tanh: the mean over
+    the line; a share `late` of the force at its end damps a slider that friction stops within a step.
     """
     if steepness > 0.0:
         t, half, middle = np.tanh(steepness * end), 0.5 * steepness * (end - r), 0.5 * steepness * (end + r)
@@ -217,13 +217,13 @@ def line_force(
         return (-static, static, 0.0) if rests else (-np.sign(end) * kinetic, -np.sign(end) * kinetic, 0.0)
     side = np.sign(r)
     r, end = side * r, side * end
-    if rests and r < light * (static + kinetic):
-        top = static - r / light
+    if rests and r < mobility * (static + kinetic):
+        top = static - r / mobility
         return (-kinetic, top, 0.0) if side > 0.0 else (-top, kinetic, 0.0)
     if end >= 0.0:
         return -side * kinetic, -side * kinetic, 0.0
-    change, own = r - end, light * kinetic
-    # it reverses: a = change + light force satisfies (own + a) (end + a - own) = r (a - own), piecewise linear
+    change, own = r - end, mobility * kinetic
+    # it reverses: a = change + mobility force satisfies (own + a) (end + a - own) = r (a - own), piecewise linear
     root = np.sqrt(change * change - 4.0 * own * (r + end - own))
     force = -2.0 * kinetic * (r + end - own) / (change + root)
     return side * force, side * force, (force - kinetic) / root
@@ -238,15 +238,22 @@ def stretching_time(dt: float, touch: Array) -> float:
 
 @inline
 def elastic_force(
-    dt: float, slip: float, ease: float, limit: float, kinetic: float, steepness: float, point: Array, touch: Array
+    dt: float,
+    slip: float,
+    compliance: float,
+    limit: float,
+    kinetic: float,
+    steepness: float,
+    point: Array,
+    touch: Array,
 ) -> tuple[float, float, float]:
     """(Friction of an elastic tangential contact, 1 where it sticks, stiffness by slip, N s/m) by return mapping.
 
-    `slip` is that of the step without this force, `ease` its gain by one. Coulomb: the trial force up to the limit.
-    Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
+    `slip` is that of the step without this force, `compliance` its gain by one. Coulomb: the trial force up to the
+    limit. Tanh: spring and slip in series, F = trial - stiffness artanh(F/limit)/K.
     """
     spring = point[lay.TANGENTIAL] * stretching_time(dt, touch)
-    full = 1.0 + 0.5 * spring * ease
+    full = 1.0 + 0.5 * spring * compliance
     trial, stiffness = (point[lay.TANGENTIAL] * touch[lay.STRETCH] - spring * slip) / full, spring / full
     if kinetic <= 0.0:
         return 0.0, 0.0, spring

@@ -148,7 +148,7 @@ def advance_impacts(
                 normal, share, ramp = mass * max(load + motion[ACCELERATION], 0.0), s, motion[RAMP]
                 surface_at(time + done + s, done + s, x + free * v * s, free * v,
                     n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
-            ease, gain = inverse, 0.0
+            compliance, gain = inverse, 0.0
             if not riding and ended:  # landing: restitution across, friction of the impulse along
                 surface_at(time + done + s, done + s, slider[lay.X], free * slider[lay.V],
                     n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
@@ -160,15 +160,15 @@ def advance_impacts(
             if share > 0.0:
                 v = slider[lay.V]
                 if riding:
-                    ease, gain = s * inverse, motion[ALONG] - speed - s * along
+                    compliance, gain = s * inverse, motion[ALONG] - speed - s * along
                 start = v - speed
                 if steepness > 0.0:
-                    force = tanh_force(start, gain, ease, mu * normal, steepness)
+                    force = tanh_force(start, gain, compliance, mu * normal, steepness)
                     touch[lay.STUCK] = 0.0
                 else:
                     stuck = riding and touch[lay.STUCK] > 0.0
                     shift = start if stuck else 0.0
-                    force = coulomb_force(start, gain - shift, gain - shift, ease, mu * normal,
+                    force = coulomb_force(start, gain - shift, gain - shift, compliance, mu * normal,
                                           slider[lay.MU_STATIC] * normal, stuck, spans[0])  # fmt: skip
                     touch[lay.STUCK] = spans[0, 0] if riding else 0.0
                 after = v + share * inverse * force + (s * along if riding else 0.0)

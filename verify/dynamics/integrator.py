@@ -13,9 +13,9 @@ from verify.dynamics.kinematics import (
     RATE,
     START,
     VALUE,
+    evaluate_surface,
     filter_rates,
     find_pieces,
-    look,
     rotate_half,
     set_factors,
     set_mean_rates,
@@ -59,7 +59,7 @@ def add_powers(
 
 
 @jit(no_cpython_wrapper=True)
-def move(
+def update_bodies(
     dt: float, codes: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
     spans: Array,
 ) -> None:  # fmt: skip
@@ -67,19 +67,24 @@ def move(
     spring, bilateral = codes[lay.LAW] == lay.SPRING, codes[lay.LAW] == lay.BILATERAL
     for i in range(0 if spring else points.shape[0]):
         slider, touch, inertia = sliders[indices[i, lay.OF_SLIDER]], contacts[i], points[i, lay.INERTIA]
-        force, light, v, own = touch[lay.FRICTION], dt * slider[lay.INVERSE_MASS], slider[lay.V], touch[lay.OWN]
-        gained, mean = slider[lay.GAINED] - light * force, v + 0.5 * slider[lay.GAINED]
-        surface, ease, steepness = touch[lay.SURFACE], light + 2.0 * own, slider[lay.STEEPNESS]
+        force, mobility, v, own = (
+            touch[lay.FRICTION],
+            dt * slider[lay.INVERSE_MASS],
+            slider[lay.V],
+            touch[lay.OWN],
+        )
+        gained, mean = slider[lay.GAINED] - mobility * force, v + 0.5 * slider[lay.GAINED]
+        surface, compliance, steepness = touch[lay.SURFACE], mobility + 2.0 * own, slider[lay.STEEPNESS]
         bounded = codes[lay.TWO_WAY] > 0 and abs(touch[lay.SLIP]) <= 1e-13 * (abs(mean) + abs(surface))
-        if light == 0.0 or force == 0.0 or bounded:
+        if mobility == 0.0 or force == 0.0 or bounded:
             pass
         elif steepness > 0.0:  # Simpson's rule, with the law at half a step
             others = surface - touch[lay.MEAN] + own * force
             rise = touch[lay.END] + 2.0 * others - touch[lay.START]
             start, a = v - touch[lay.MEAN] - others + 0.5 * rise, 0.5 * (rise - gained)
             most = slider[lay.MU] * max(touch[lay.NORMAL], 0.0)
-            half = tanh_change(start, a, 0.5 * ease * most, steepness) * light / ease
-            mean = v + (4.0 * half + light * force) / 6.0 + 0.5 * gained
+            half = tanh_change(start, a, 0.5 * compliance * most, steepness) * mobility / compliance
+            mean = v + (4.0 * half + mobility * force) / 6.0 + 0.5 * gained
         else:
             mean = surface + spans[i, 1]
         slider[lay.X] += dt * (mean * slider[lay.FREE] + slider[lay.DRIFT])
@@ -295,8 +300,23 @@ def advance(
             if when == HALF or (spring and when != MIDDLE and n_steps > 0) or (n_steps == 0 and when != START):
                 continue
             ready = mark + 4 if when == END and not two_way else mark + when  # the start of the next step as well
-            look(when, ready, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points, contacts,
-                 indices)  # fmt: skip
+            evaluate_surface(
+                when,
+                ready,
+                dt,
+                gravity,
+                codes,
+                table,
+                edges,
+                factors,
+                local,
+                stamp,
+                sliders,
+                feet,
+                points,
+                contacts,
+                indices,
+            )
         if n_steps == 0:
             return lay.DONE
         if two_way:
@@ -307,7 +327,7 @@ def advance(
         if two_way:
             apply_forces(codes, rows, points, contacts, shapes)
         add_sums(dt, codes, sliders, feet, points, contacts, indices, feet_of, shapes, response, spans, sums, balance)
-        move(dt, codes, sliders, feet, points, contacts, indices, spans)
+        update_bodies(dt, codes, sliders, feet, points, contacts, indices, spans)
         write_events(drive[lay.ORIGIN] + time, dt, codes, sliders, points, contacts, indices, spans, events, tally)
         tally[lay.STEP] += 1
         if two_way or accounts:
@@ -321,8 +341,23 @@ def advance(
             return lay.NOT_FINITE
         if tally[lay.STEP] % every == 0:
             for when in range(0 if spring or not find_pieces(0.0, edges, sliders, points, indices) else 1):
-                look(when, mark + 4, dt, gravity, codes, table, edges, factors, local, stamp, sliders, feet, points,
-                     contacts, indices)  # fmt: skip
+                evaluate_surface(
+                    when,
+                    mark + 4,
+                    dt,
+                    gravity,
+                    codes,
+                    table,
+                    edges,
+                    factors,
+                    local,
+                    stamp,
+                    sliders,
+                    feet,
+                    points,
+                    contacts,
+                    indices,
+                )
             sample(every * dt, codes, sliders, feet, points, contacts, indices, factors, places, samples, heights,
                    pressures, deflections, sums, before, tally)  # fmt: skip
     return lay.DONE

@@ -128,7 +128,7 @@ def read_surface(
 
 
 @jit(no_cpython_wrapper=True)
-def look(
+def evaluate_surface(
     when: int, mark: int, dt: float, gravity: float, codes: Indices, table: Array, edges: Array, factors: Array,
     local: Array, stamp: Indices, sliders: Array, feet: Array, points: Array, contacts: Array, indices: Indices,
 ) -> None:  # fmt: skip

@@ -9,7 +9,7 @@ from verify.dynamics.point_forces import friction_limit
 from verify.jit import inline
 
 START, STOP, LEAST, MOST = range(4, 8)
-"""Columns of `spans` in `slide`: relative speed at the start, gain that stops the point, bounds of its friction."""
+"""Columns of `spans` here: relative speed at the start, gain that stops the point, bounds of its friction."""
 ROUNDS = 100
 """Newton steps and bisections for the gain of speed: bisection alone reaches its rounding in about 60."""
 
@@ -21,7 +21,7 @@ def slope_of_friction(
     """Derivative of a point's friction by the gain of its slider; `work` gets STOP and the bounds of the force."""
     kinetic, v, steepness = slider[lay.MU] * touch[lay.NORMAL], slider[lay.V], slider[lay.STEEPNESS]
     static, stuck = slider[lay.MU_STATIC] * touch[lay.NORMAL], touch[lay.WAS_STUCK] > 0.0
-    start, rise, light, work[STOP] = work[START], touch[lay.RISE], dt * slider[lay.INVERSE_MASS], gained
+    start, rise, mobility, work[STOP] = work[START], touch[lay.RISE], dt * slider[lay.INVERSE_MASS], gained
     if point[lay.TANGENTIAL] > 0.0:
         slip, limit = v + 0.5 * gained - touch[lay.MEAN], friction_limit(slider, touch)
         force, soft, stiffness = elastic_force(dt, slip, 0.0, limit, kinetic, steepness, point, touch)
@@ -30,18 +30,18 @@ def slope_of_friction(
             soft = steepness * (kinetic - force * force / (kinetic + 1e-300))
             soft /= soft + stiffness
         return -0.5 * stiffness * soft
-    rounding, end = 1e-13 * (abs(v) + abs(start) + abs(rise) + light * kinetic), start + gained - rise
-    least, most, slope = line_force(start, end, light, kinetic, static, steepness, late, stuck, rounding)
+    rounding, end = 1e-13 * (abs(v) + abs(start) + abs(rise) + mobility * kinetic), start + gained - rise
+    least, most, slope = line_force(start, end, mobility, kinetic, static, steepness, late, stuck, rounding)
     work[0], work[LEAST], work[MOST] = 0.0, least, most
     if least < most:
         work[0] = 1.0 if stuck or abs(start) <= rounding else 0.5
-    elif steepness == 0.0 and abs(start) < light * (static + kinetic) and abs(end) > rounding:
+    elif steepness == 0.0 and abs(start) < mobility * (static + kinetic) and abs(end) > rounding:
         work[STOP] = rise - start
     return float(slope)
 
 
 @inline
-def slide(
+def solve_one_way_friction(
     last: int, dt: float, sliders: Array, points: Array, contacts: Array, indices: Indices, spans: Array
 ) -> float:
     """Friction of a slider, its last point this one, on feet without response of the beam; what its momentum lacks, N.
@@ -53,15 +53,15 @@ def slide(
     slider, first = sliders[indices[last, lay.OF_SLIDER]], last
     while first > 0 and indices[first - 1, lay.OF_SLIDER] == indices[last, lay.OF_SLIDER]:
         first -= 1
-    light, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
+    mobility, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
     pulled, gained, limit, rest, resting = slider[lay.GAINED], slider[lay.GAINED], 0.0, 0.0, False
     for i in range(first, last + 1):
         touch, normal = contacts[i], contacts[i, lay.NORMAL]
         start = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
         spans[i, START] = start
-        limit += light * normal * slider[lay.MU_STATIC]
-        gained += light * touch[lay.WAS_FRICTION]
-        if normal > 0.0 and (touch[lay.WAS_STUCK] > 0.0 or abs(start) <= 1e-13 * light * slider[lay.MU] * normal):
+        limit += mobility * normal * slider[lay.MU_STATIC]
+        gained += mobility * touch[lay.WAS_FRICTION]
+        if normal > 0.0 and (touch[lay.WAS_STUCK] > 0.0 or abs(start) <= 1e-13 * mobility * slider[lay.MU] * normal):
             rest, resting = touch[lay.RISE] - start, True
     low, high = pulled - 1.001 * limit, pulled + 1.001 * limit
     gained = min(max(rest if resting else gained, low), high)  # between the limits of friction a point at rest stays
@@ -69,19 +69,24 @@ def slide(
     least, most, miss, exact = 0.0, 0.0, 0.0, steepness > 0.0 and first == last and points[last, lay.TANGENTIAL] == 0.0
     if exact:
         kinetic, late = slider[lay.MU] * contacts[last, lay.NORMAL], 0.0
-        least = tanh_force(spans[last, START], contacts[last, lay.RISE] - pulled, light, kinetic, steepness)
-        spans[last, 0], spans[last, LEAST], spans[last, MOST], gained = 0.0, least, least, pulled + light * least
+        least = tanh_force(spans[last, START], contacts[last, lay.RISE] - pulled, mobility, kinetic, steepness)
+        spans[last, 0], spans[last, LEAST], spans[last, MOST], gained = (
+            0.0,
+            least,
+            least,
+            pulled + mobility * least,
+        )
     for _ in range(0 if exact else ROUNDS):
         least, most, slope = 0.0, 0.0, 0.0
         for i in range(first, last + 1):
             slope += slope_of_friction(dt, gained, late, slider, points[i], contacts[i], spans[i])
             least, most = least + spans[i, LEAST], most + spans[i, MOST]
-        miss = gained - pulled - light * most
+        miss = gained - pulled - mobility * most
         if miss > 0.0:
             high = gained
         else:
-            miss, low = min(gained - pulled - light * least, 0.0), gained
-        after = gained - miss / (1.0 - light * slope)
+            miss, low = min(gained - pulled - mobility * least, 0.0), gained
+        after = gained - miss / (1.0 - mobility * slope)
         if not low < after < high:
             after = 0.5 * (low + high)
         for i in range(first, last + 1):  # to the first stop on the line
@@ -91,12 +96,12 @@ def slide(
             break
         gained = after
     share, total = 0.5, 0.0
-    if light > 0.0 and most > least:
-        share = min(max(((gained - pulled) / light - least) / (most - least), 0.0), 1.0)
+    if mobility > 0.0 and most > least:
+        share = min(max(((gained - pulled) / mobility - least) / (most - least), 0.0), 1.0)
     for i in range(first, last + 1):
         contacts[i, lay.FRICTION] = spans[i, LEAST] + share * (spans[i, MOST] - spans[i, LEAST])
         total += contacts[i, lay.FRICTION]
-    slider[lay.GAINED] = pulled + light * total
+    slider[lay.GAINED] = pulled + mobility * total
     mean = v + 0.5 * slider[lay.GAINED]
     for i in range(first, last + 1):
         touch, work = contacts[i], spans[i]
@@ -109,7 +114,7 @@ def slide(
             loss += late * kinetic * np.tanh(steepness * end) * (end - slip)
         elif start * end <= 0.0 or work[0] > 0.0:  # before and after the reversal
             side = -1.0 if start < 0.0 else 1.0
-            before = abs(start) / (max(light * (kinetic + side * force), 0.0) + abs(start - end) + 1e-300)
+            before = abs(start) / (max(mobility * (kinetic + side * force), 0.0) + abs(start - end) + 1e-300)
             loss = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
         touch[lay.SLIP], work[1] = slip, loss
-    return abs(gained - slider[lay.GAINED]) / light if light > 0.0 else 0.0
+    return abs(gained - slider[lay.GAINED]) / mobility if mobility > 0.0 else 0.0

@@ -43,7 +43,7 @@ def own_product(i: int, s: int, shapes: Array) -> float:
 
 
 @inline(fastmath=FAST)
-def respond(i: int, s: int, force: float, shapes: Array, response: Array) -> None:
+def add_response(i: int, s: int, force: float, shapes: Array, response: Array) -> None:
     """Add a force of point i on the beam in direction s to the mean rates of the columns."""
     for j in range(shapes.shape[2]):
         response[j] -= force * shapes[2 + s, i, j]
@@ -149,18 +149,22 @@ def friction_force(
     """Friction of point i on its slider, mean over the step, with its own response."""
     force, normal, work, several = touch[lay.FRICTION], max(touch[lay.NORMAL], 0.0), spans[i], shapes.shape[1] > 1
     kinetic, static, own, others = slider[lay.MU] * normal, slider[lay.MU_STATIC] * normal, 0.0, 0.0
-    light, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
+    mobility, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
     if codes[lay.TWO_WAY] > 0:
         own = touch[lay.OWN]
         others = product(i, 0, shapes, response) + own * force
-    ease, gained, was_stuck = light + 2.0 * own, slider[lay.GAINED] - light * force, touch[lay.WAS_STUCK]
+    compliance, gained, was_stuck = (
+        mobility + 2.0 * own,
+        slider[lay.GAINED] - mobility * force,
+        touch[lay.WAS_STUCK],
+    )
     mean = touch[lay.MEAN] + others
     slip = v + 0.5 * gained - mean  # mean over the step without this force
     work[0], work[3] = 0.0, 0.0
     if point[lay.TANGENTIAL] > 0.0:
         limit = friction_limit(slider, touch)
-        force, work[0], _ = elastic_force(dt, slip, ease, limit, kinetic, steepness, point, touch)
-        touch[lay.SLIP] = slip + 0.5 * ease * force
+        force, work[0], _ = elastic_force(dt, slip, compliance, limit, kinetic, steepness, point, touch)
+        touch[lay.SLIP] = slip + 0.5 * compliance * force
         return float(force)
     if kinetic <= 0.0:
         force = 0.0
@@ -174,27 +178,27 @@ def friction_force(
             a0 = 6.0 * mean - 4.0 * start - 2.0 * end - gained
             a1 = 4.0 * end + 2.0 * start - 6.0 * mean - gained
         if steepness > 0.0:
-            force = tanh_force(v - mean + 0.5 * rise, rise - gained, ease, kinetic, steepness)
+            force = tanh_force(v - mean + 0.5 * rise, rise - gained, compliance, kinetic, steepness)
         elif several and (was_stuck > 0.0 or touch[lay.GRIP] == HOLDS):
             static = friction_limit(slider, touch)
-            needed = -2.0 * (slip - sticking_slip(codes, slider, touch)) / (ease * (1.0 + CREEP))
+            needed = -2.0 * (slip - sticking_slip(codes, slider, touch)) / (compliance * (1.0 + CREEP))
             force = min(max(needed, -static), static)
-            work[0], work[2], work[3] = 1.0 if force == needed else 0.0, ease * (force - needed), 0.0
+            work[0], work[2], work[3] = 1.0 if force == needed else 0.0, compliance * (force - needed), 0.0
             work[1] = 0.5 * work[2]
             if force != needed:
                 work[3], work[4], work[5] = 1.0, 1.0, lay.SLIPS
         elif was_stuck == 1.0 and own > 0.0:
-            needed = -2.0 * (slip - sticking_slip(codes, slider, touch)) / ease
-            force = held_force(needed, kinetic, static, touch[lay.WAS_FRICTION], ease, work)
+            needed = -2.0 * (slip - sticking_slip(codes, slider, touch)) / compliance
+            force = held_force(needed, kinetic, static, touch[lay.WAS_FRICTION], compliance, work)
         else:
             left = v - start if was_stuck > 0.0 else 0.0  # of the last step, taken off in this one
             static = kinetic if several else static  # beyond it `revise_limits` lets the point try
-            force = coulomb_force(v - start, a0 - left, a1 - left, ease, kinetic, static, was_stuck > 0.0, work)
+            force = coulomb_force(v - start, a0 - left, a1 - left, compliance, kinetic, static, was_stuck > 0.0, work)
     if own > 0.0:
         # A force that is constant over the step dissipates where it lies between none and the one without mean slip.
         # Beyond, as in the step of a slip reversal, it returns at most what friction has dissipated before.
-        bound = -slip / ease
-        wide = np.sqrt(bound * bound + 2.0 * max(touch[lay.LOSS], 0.0) / (dt * ease))
+        bound = -slip / compliance
+        wide = np.sqrt(bound * bound + 2.0 * max(touch[lay.LOSS], 0.0) / (dt * compliance))
         force = min(max(force, bound - wide), bound + wide)
-    touch[lay.SLIP] = slip + 0.5 * ease * force
+    touch[lay.SLIP] = slip + 0.5 * compliance * force
     return float(force)
