@@ -83,6 +83,11 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self.steps.duration
 
     @property
+    def powers(self) -> int:
+        """Number of powers of time in the drive; each has two columns, real and imaginary part."""
+        return 1 if self.forced is None else self.forced.forward.shape[1]
+
+    @property
     def sample_times(self) -> Array:
         """Times of the samples, (n,), s from the start of the stage, without the start."""
         return self.steps.every * self.steps.dt * np.arange(1.0, self.steps.n // self.steps.every + 1)
@@ -111,8 +116,9 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Those of the drive are a real part and minus an imaginary part for each power of t.
         """
-        powers = 1 if self.forced is None else self.forced.forward.shape[1]
-        drive = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
+        drive = (t[:, None] / self.unit_s) ** np.arange(self.powers) * np.exp(
+            1j * self.omega * (t[:, None] + self.origin)
+        )
         imaginary = z[:, z.shape[1] - self.complex_rows :].imag
         return np.concatenate([z.real, -imaginary, interleaved(drive.conj())], axis=1)
 
@@ -126,8 +132,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def rates_at_start(self, z: ComplexArray) -> Array:
         """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
-        rates, powers = self.rows.rates * z, 1 if self.forced is None else self.forced.forward.shape[1]
-        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * powers])[:powers]
+        rates = self.rows.rates * z
+        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * self.powers])[: self.powers]
         drive *= np.exp(1j * self.omega * self.origin)
         imaginary = rates[len(rates) - self.complex_rows :].imag
         return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])

@@ -5,6 +5,7 @@ from time import thread_time
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
@@ -22,10 +23,13 @@ REACH, FARTHEST = 8, 128
 """Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
 
 
+ARRAYS = ("sliders", "feet", "points", "contacts", "indices")
+
+
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Sliders with their points on a beam, as arrays in the columns of `layout`; advanced in place by `run_stages`.
 
-    `contact_assembly` fills them in; a run continues from copies of `sliders`, `feet` and `contacts`.
+    `contact_assembly` fills them in once; every run advances a `copy`.
     """
 
     start: float
@@ -54,6 +58,10 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Whether the state is an equilibrium, with depths of the middle of the first step."""
     restitution: float | None = None
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
+
+    def copy(self) -> "Contacts":
+        """The same state in arrays of its own, to be advanced."""
+        return replace(self, **{name: getattr(self, name).copy() for name in ARRAYS})
 
 
 def run_stages(
@@ -131,8 +139,8 @@ class Run:
         began, contacts, n = thread_time(), self.contacts, len(z)
         rows, drive = rows_of(stage, z), np.array([stage.omega, stage.origin, stage.unit_s], dtype=float)
         places = np.ascontiguousarray(stage.outputs(self.places).T) if self.deflections.shape[1] else np.zeros((0, 0))
-        columns = stage.columns(stage.edges[:1]).shape[0]
         own = n + stage.complex_rows
+        columns = own + 2 * stage.powers
         forced, loads, growth = np.zeros((0, columns - own)), np.zeros((4, 0)), np.zeros(0)
         if self.accounts and stage.forced is not None:
             forced, loads = stage.rows.accounts(stage.forced)
