@@ -171,8 +171,16 @@ def basis_of(
     beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline", loads: Sequence[PointLoad] = ()
 ) -> TimeBasis:
     """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError."""
-    moments = [load.position for load in loads if isinstance(load, PointMoment)]
-    return MODELS.named(model).build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
+    moments = tuple(load.position for load in loads if isinstance(load, PointMoment))
+    return _basis(MODELS.named(model), beam, count, modes, line, moments)
+
+
+@lru_cache(maxsize=2)  # of the runs of a study of sliders, steps or drives; 2000 modes have 160 MB
+def _basis(
+    kind: Any, beam: Beam, count: int | None, modes: int | None, line: str, moments: tuple[float, ...]
+) -> TimeBasis:
+    basis: TimeBasis = kind.build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
+    return basis
 
 
 def stages_from_rest(
