@@ -140,6 +140,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
         """Deflection (m) and readings in closed form, (len(t), outputs): free rows from z at t = 0, and the drive."""
+        if not len(x) and not self.readings.size:
+            return np.empty((len(t), 0))
         return np.asarray(self.factors(self.rows.after(z, t), t) @ self.outputs(x))
 
     def free(self, z: ComplexArray) -> ComplexArray:

@@ -184,11 +184,9 @@ class Run:
             if reason in (lay.NOT_FINITE, lay.CHATTERS):
                 why = "diverged" if reason == lay.NOT_FINITE else "chatters"
                 break
-            began, last = thread_time(), first
-            self.reach = min(2 * self.reach, FARTHEST)
-            first = self._around(stage)
-            if reason == lay.OFF_PIECES and first == last:
-                first = None
+            if self.tally[lay.STEP] < stage.steps.n:
+                began, last, self.reach = thread_time(), first, min(2 * self.reach, FARTHEST)
+                first = None if (around := self._around(stage)) == last else around
         self.z = rows[lay.Z_RE] + 1j * rows[lay.Z_IM]
         if why == "end" and self.tally[lay.STEP] < stage.steps.n:
             if contacts.moving_load:
