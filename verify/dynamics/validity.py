@@ -1,6 +1,7 @@
 """Validity of a run: the size of the coupling of sliders and beam, and of what no time step removes."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -105,6 +106,7 @@ def field_receptance(
     return receptance
 
 
+@lru_cache(maxsize=256)
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     """A unit couple at x, 1 N m, as five close forces from x inwards: a difference quotient of order 4.
 
@@ -124,11 +126,12 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
     `lift_off` of point sliders is that of the run.
     """
     beam, hertz, x = request.beam, request.frequency_hz, np.linspace(0.0, request.beam.length, 400)
-    alone = request.feet or not request.sliders
-    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max()) if alone else 0.0
+    lift_off = 0.0
+    if request.feet or not request.sliders:
+        falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
+        lift_off = falling / request.gravity if request.gravity else inf
     square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
     turns = abs(lossless_wavenumber(beam, hertz)) * beam.length
-    lift_off = falling / request.gravity if request.gravity else inf
     return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
 
 
