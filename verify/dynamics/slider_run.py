@@ -280,9 +280,11 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def _kinetic(self, contacts: Contacts) -> float:
         """Kinetic energy of sliders and feet, along and across the beam, J."""
         feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
-        inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
-        inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-        twice = masses @ contacts.sliders[:, lay.V] ** 2 + (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
+        twice = masses @ contacts.sliders[:, lay.V] ** 2
+        if len(feet):
+            inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
+            inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+            twice += (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
         if contacts.law == lay.BILATERAL:
             twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
         return 0.5 * float(twice)

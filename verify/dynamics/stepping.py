@@ -19,7 +19,7 @@ SPANS = 12
 """Largest number of spans between events in a step, as in `friction`."""
 RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
-REACH, FARTHEST = 8, 128
+REACH, FARTHEST = 2, 128
 """Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
 
 
@@ -241,11 +241,11 @@ class Run:
     def _around(self, stage: Stage) -> tuple[int, int] | None:
         """(first, end) piece around all points; None where a point is off the beam."""
         edges, x = stage.edges - self.contacts.start, self.positions()
-        if x.min() < edges[0] or x.max() > edges[-1]:
+        if (least := x.min()) < edges[0] or (most := x.max()) > edges[-1]:
             return None
         pieces = len(edges) - 1
-        low, high = np.clip(np.searchsorted(edges, [x.min(), x.max()], side="right") - 1, 0, pieces - 1)
-        return max(int(low) - self.reach, 0), min(int(high) + 1 + self.reach, pieces)
+        low, high = (min(int(i) - 1, pieces - 1) for i in np.searchsorted(edges, [least, most], side="right"))
+        return max(low - self.reach, 0), min(high + 1 + self.reach, pieces)
 
     def _go_on(self, stage: Stage) -> None:
         """Advance the beam to the end of the stage after a moving load has left it."""
