@@ -1,7 +1,7 @@
 """Validation of frozen values by their annotations, and checks of single arguments: one sentence for each error."""
 
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache
 from math import isfinite
 from types import MemberDescriptorType
 from typing import Annotated, Any, TypeAlias, TypeVar, cast
@@ -83,12 +83,8 @@ def check_number(
     at_most: float | None = None,
 ) -> None:
     """Raise InputError unless `value` is finite and within the limits, of which `above` and `below` are open."""
-    convert(python_scalar(value), _number(unit_name, above, below, at_least, at_most), field)
-
-
-@lru_cache(maxsize=256)
-def _number(unit_name: str, above: float | None, below: float | None, least: float | None, most: float | None) -> Any:
-    return Annotated[float, unit(unit_name, gt=above, ge=least, lt=below, le=most)]
+    annotation: Any = Annotated[float, unit(unit_name, gt=above, ge=at_least, lt=below, le=at_most)]
+    convert(python_scalar(value), annotation, field)
 
 
 def check_integer(field: str, value: object, least: int, most: int | None = None) -> None:

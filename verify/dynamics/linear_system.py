@@ -116,9 +116,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Those of the drive are a real part and minus an imaginary part for each power of t.
         """
-        drive = (t[:, None] / self.unit_s) ** np.arange(self.powers) * np.exp(
-            1j * self.omega * (t[:, None] + self.origin)
-        )
+        column, powers = t[:, None], np.arange(self.powers)
+        drive = (column / self.unit_s) ** powers * np.exp(1j * self.omega * (column + self.origin))
         imaginary = z[:, z.shape[1] - self.complex_rows :].imag
         return np.concatenate([z.real, -imaginary, interleaved(drive.conj())], axis=1)
 

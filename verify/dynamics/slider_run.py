@@ -172,10 +172,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         statistics, request, resolved = motion.statistics, self.request, True
         dt = statistics.step_s
         if request.step is not None:
-            resolved = (
-                step_control.unresolved(self.stages, self._unloaded(), request.beam.length, dt)
-                <= step_control.UNRESOLVED
-            )
+            share = step_control.unresolved(self.stages, self._unloaded(), request.beam.length, dt)
+            resolved = share <= step_control.UNRESOLVED
         notes = step_control.check_energy(motion, request.frequency_hz, request.feet, resolved)
         if statistics.unconverged:
             notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)

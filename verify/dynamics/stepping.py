@@ -5,7 +5,7 @@ from time import thread_time
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
@@ -21,9 +21,6 @@ RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
 REACH, FARTHEST = 2, 128
 """Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
-
-
-ARRAYS = ("sliders", "feet", "points", "contacts", "indices")
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
@@ -61,7 +58,7 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
 
     def copy(self) -> "Contacts":
         """The same state in arrays of its own, to be advanced."""
-        return replace(self, **{name: getattr(self, name).copy() for name in ARRAYS})
+        return replace(self, **{k: v.copy() for k, v in asdict(self).items() if isinstance(v, np.ndarray)})
 
 
 def run_stages(
