@@ -206,7 +206,7 @@ def stages_from_rest(
     for piece in pieces:
         unit, envelope = piece.steps.duration, piece.coefficients
         forced = forced_response(rows, omega, envelope, unit, origin)
-        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
+        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope))) if tail else envelope
 
         def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
             shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope without delay
