@@ -178,7 +178,7 @@ def basis_of(
     moments = tuple(load.position for load in loads if isinstance(load, PointMoment))
     basis = _basis(MODELS.named(model), beam, count, modes, line, moments)
     at = lru_cache(maxsize=8)(lambda x, derivative: basis.shapes(np.frombuffer(x), derivative))
-    return replace(basis, shapes=lambda x, derivative: at(x.tobytes(), derivative))
+    return replace(basis, shapes=lambda x, derivative: at(np.asarray(x, dtype=float).tobytes(), derivative))
 
 
 @lru_cache(maxsize=2)  # of the runs of a study of sliders, steps or drives; 2000 modes have 160 MB
