@@ -113,16 +113,16 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     line: Any = None  # contact line per unit transverse step of each link, (x, derivative) -> (N, len(x))
     tolerance: float = 1e-9
 
-    def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
-        z = super()._initial(contacts, loaded)
-        if loaded and contacts.normal_two_way:
+    def _initial(self) -> tuple[Contacts, ComplexArray]:
+        contacts, z = super()._initial()
+        if contacts.normal_two_way:
             rises = self._rises(self._rest(contacts))
             ground: Any = SimpleNamespace(
                 edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
                 rates_at_start=lambda z: 0.0 * rises,
             )  # fmt: skip
             set_down(contacts, ground, z)
-        return z
+        return contacts, z
 
     def _rest(self, contacts: Contacts) -> ChainState:
         """Equilibrium of the chain with the sliders."""

@@ -97,7 +97,7 @@ class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def interleaved(amplitudes: ComplexArray) -> Array:
     """Alternate real and imaginary parts, (n, k) complex -> (n, 2 k)."""
-    return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
+    return np.ascontiguousarray(amplitudes, dtype=complex).view(float)
 
 
 def modal_rows(basis: TimeBasis, forces: Sequence[PointLoad], damping: Ratio) -> Rows:
@@ -124,8 +124,10 @@ def forced_response(rows: Rows, omega: float, envelope: Array, unit_s: float, or
     back = rows.loads if rows.backward_loads is None else rows.backward_loads
     pairs = ((rows.rates, rows.participations, rows.loads), (rows.rates.conj(), rows.participations.conj(), back))
     parts = [_amplitudes(1j * omega - rate, 0.5 * np.outer(c * load, envelope), unit_s) for rate, c, load in pairs]
-    width = max(part.shape[1] for part in parts)
-    forward, backward = (np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts)
+    if parts[0].shape != parts[1].shape:  # one is a series
+        width = max(part.shape[1] for part in parts)
+        parts = [np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in parts]
+    forward, backward = parts
     return Forced(forward=forward, backward=backward, omega=omega, origin=origin, unit_s=unit_s)
 
 

@@ -183,8 +183,8 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray, rise_of_step: Ar
     p, state, x = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
     lever, factors, rates = p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
     at = np.clip(x + lever * (factors @ stage.columns(x, 1)), 0.0, stage.edges[-1])  # the material under a point
-    level, slope, bend = (factors @ stage.columns(at, derivative) for derivative in range(3))
-    rise, turn = (rates @ stage.columns(at, derivative) for derivative in range(2))
+    columns = [stage.columns(at, derivative) for derivative in range(3)]
+    (level, slope, bend), (rise, turn) = (factors @ one for one in columns), (rates @ one for one in columns[:2])
     along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
     along = along - slope * rise if contacts.following else along
     along = along * contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.FREE]

@@ -83,6 +83,11 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self.steps.duration
 
     @property
+    def powers(self) -> int:
+        """Number of powers of time in the drive; each has two columns, real and imaginary part."""
+        return 1 if self.forced is None else self.forced.forward.shape[1]
+
+    @property
     def sample_times(self) -> Array:
         """Times of the samples, (n,), s from the start of the stage, without the start."""
         return self.steps.every * self.steps.dt * np.arange(1.0, self.steps.n // self.steps.every + 1)
@@ -111,8 +116,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Those of the drive are a real part and minus an imaginary part for each power of t.
         """
-        powers = 1 if self.forced is None else self.forced.forward.shape[1]
-        drive = (t[:, None] / self.unit_s) ** np.arange(powers) * np.exp(1j * self.omega * (t[:, None] + self.origin))
+        column, powers = t[:, None], np.arange(self.powers)
+        drive = (column / self.unit_s) ** powers * np.exp(1j * self.omega * (column + self.origin))
         imaginary = z[:, z.shape[1] - self.complex_rows :].imag
         return np.concatenate([z.real, -imaginary, interleaved(drive.conj())], axis=1)
 
@@ -126,14 +131,16 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def rates_at_start(self, z: ComplexArray) -> Array:
         """Time derivatives of the factors at time 0 for free rows z, (columns,)."""
-        rates, powers = self.rows.rates * z, 1 if self.forced is None else self.forced.forward.shape[1]
-        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * powers])[:powers]
+        rates = self.rows.rates * z
+        drive = np.array([1j * self.omega, 1.0 / self.unit_s, *(0.0,) * self.powers])[: self.powers]
         drive *= np.exp(1j * self.omega * self.origin)
         imaginary = rates[len(rates) - self.complex_rows :].imag
         return np.concatenate([rates.real, -imaginary, interleaved(drive[None].conj())[0]])
 
     def deflection(self, z: ComplexArray, t: Array, x: Array) -> Array:
         """Deflection (m) and readings in closed form, (len(t), outputs): free rows from z at t = 0, and the drive."""
+        if not len(x) and not self.readings.size:
+            return np.empty((len(t), 0))
         return np.asarray(self.factors(self.rows.after(z, t), t) @ self.outputs(x))
 
     def free(self, z: ComplexArray) -> ComplexArray:
@@ -164,9 +171,22 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def basis_of(
     beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline", loads: Sequence[PointLoad] = ()
 ) -> TimeBasis:
-    """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError."""
-    moments = [load.position for load in loads if isinstance(load, PointMoment)]
-    return MODELS.named(model).build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
+    """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError.
+
+    A run has a basis of its own, whose shapes remember the last places at which stages, tables and checks asked.
+    """
+    moments = tuple(load.position for load in loads if isinstance(load, PointMoment))
+    basis = _basis(MODELS.named(model), beam, count, modes, line, moments)
+    at = lru_cache(maxsize=8)(lambda x, derivative: basis.shapes(np.frombuffer(x), derivative))
+    return replace(basis, shapes=lambda x, derivative: at(np.asarray(x, dtype=float).tobytes(), derivative))
+
+
+@lru_cache(maxsize=2)  # of the runs of a study of sliders, steps or drives; 2000 modes have 160 MB
+def _basis(
+    kind: Any, beam: Beam, count: int | None, modes: int | None, line: str, moments: tuple[float, ...]
+) -> TimeBasis:
+    basis: TimeBasis = kind.build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
+    return basis
 
 
 def stages_from_rest(
@@ -186,7 +206,7 @@ def stages_from_rest(
     for piece in pieces:
         unit, envelope = piece.steps.duration, piece.coefficients
         forced = forced_response(rows, omega, envelope, unit, origin)
-        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope)))
+        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope))) if tail else envelope
 
         def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
             shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope without delay

@@ -44,6 +44,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     basis: TimeBasis | None
     """None without free modes."""
     stages: list[Stage]
+    contacts: Contacts
+    """Sliders without transverse motion, feet at height 0; a run advances a copy."""
     coupling: validity.Coupling
     margins: validity.Margins
     notes: tuple[str, ...]
@@ -65,6 +67,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             request=request,
             basis=basis,
             stages=stages,
+            contacts=assemble(beam, request.sliders, starts, request.prescribed_speeds, request.fixed),
             coupling=validity.coupling_of(beam, request.sliders, starts, stages[-1], receptance),
             margins=validity.margins_of(request, stages[-1]),
             notes=notes,
@@ -74,13 +77,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         check_steps(sum(stage.duration for stage in run.stages), run.stages[-1].steps.dt)
         return run
 
-    def _contacts(self) -> Contacts:
-        request = self.request
-        return assemble(request.beam, request.sliders, request.starts, request.prescribed_speeds, request.fixed)
-
     def _with_feet_steps(self) -> "SliderRun":
-        request, contacts, basis = self.request, self._contacts(), self.basis if self.request.two_way else None
-        rate, fastest = contact_rate(contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
+        request, basis = self.request, self.basis if self.request.two_way else None
+        rate, fastest = contact_rate(self.contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
         step = step_control.feet_step(self.stages[0].steps.dt, rate, fastest, request.step)
         stages, slips = step_control.stepped(self.stages, step), validity.presliding(request)
         margins = replace(self.margins, presliding=slips, contact_step=rate * stages[-1].steps.dt)
@@ -88,7 +87,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _with_point_steps(self) -> "SliderRun":
         request, stages, length, rate = self.request, self.stages, self.request.beam.length, 0.0
-        z, longest = self._initial(self._contacts(), loaded=False), max(stage.steps.dt for stage in stages)
+        z, longest = self._unloaded(), max(stage.steps.dt for stage in stages)
         if request.step is not None:
             share = step_control.unresolved(stages, z, length, longest)
             enough = step_control.point_step(stages, z, length, longest, 0.0)
@@ -102,10 +101,16 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         step = step_control.point_step(stages, z, length, longest, rate)
         return replace(self, stages=step_control.stepped(stages, step))
 
-    def _initial(self, contacts: Contacts, loaded: bool = True) -> ComplexArray:
-        """Free rows at the start, (n,), sliders in equilibrium or in the state of an earlier run. Raises InputError."""
+    def _unloaded(self) -> ComplexArray:
+        """Free rows at the start, (n,), without deflection under the sliders. Raises InputError."""
+        stage = self.stages[0]
+        at_rest = np.zeros(len(stage.rows.rates), dtype=complex)
+        return stage.free(self.request.continued(stage) if self.request.before else at_rest)
+
+    def _initial(self) -> tuple[Contacts, ComplexArray]:
+        """Sliders in equilibrium or in the state of an earlier run, and free rows, (n,). Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
-        z: ComplexArray = np.zeros(len(stage.rows.rates), dtype=complex)
+        contacts, z = self.contacts.copy(), self._unloaded()
         dt = stage.steps.dt if contacts.law == lay.SPRING and contacts.restitution is None else 0.0
         rise: Array | float = 0.0
 
@@ -113,15 +118,16 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             rows = stage.rows
             return rows.state(rows.after(rows.of_state(q, 0.0 * q), seconds))[0][: len(q)] if dt else q
 
-        if basis and loaded and contacts.normal_two_way:
+        if basis and contacts.normal_two_way:
             still, rise = static_deflection(basis, contacts, released, dt)
-            z = stage.rows.of_state(still, 0.0 * still)
-            if stage.forced is None and contacts.law == lay.BILATERAL:
-                z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
-        z = stage.free(request.continued(stage) if before else z)
+            if before is None:
+                z = stage.rows.of_state(still, 0.0 * still)
+                if stage.forced is None and contacts.law == lay.BILATERAL:
+                    z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
+                z = stage.free(z)
         if before is None or before.contact is None:
             set_down(contacts, stage, z, rise)
-            return z
+            return contacts, z
         state = before.contact
         if state.points.shape != contacts.contacts.shape or len(state.feet) != len(contacts.feet):
             raise InputError("continue_from: its feet differ from slider.foot, give both runs the same slider")
@@ -129,7 +135,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         contacts.sliders[:, lay.X] = state.sliders[:, 0]
         contacts.sliders[:, lay.V] = np.where(prescribed, contacts.sliders[:, lay.V], state.sliders[:, 1])
         contacts.feet[:, : lay.TURN + 1], contacts.contacts[:] = state.feet, state.points
-        return z
+        return contacts, z
 
     def converged(self, progress: Progress) -> Motion:
         """The run; where friction acts on its own slip, also the change when an automatic step is doubled.
@@ -138,15 +144,15 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Raises InputError for a residual of the energy balance above its tolerance.
         """
-        request, stages = self.request, self.stages
+        request, stages, start = self.request, self.stages, self._initial()
         if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
-            return self._checked(self.run(stages, progress))
+            return self._checked(self.run(stages, *start, progress))
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
         rough = step_control.stepped(stages, 2.0 * dt, closer)
         close = [one.stepped(0.5 * of.steps.dt, closer) for one, of in zip(stages, rough, strict=True)]  # samples fit
-        coarse = self.run(rough, lambda part: progress(part / 3.0))
-        fine = self.run(close, lambda part: progress((1.0 + 2.0 * part) / 3.0))
+        coarse = self.run(rough, *start, lambda part: progress(part / 3.0))
+        fine = self.run(close, *start, lambda part: progress((1.0 + 2.0 * part) / 3.0))
         moved, cost = step_control.change(coarse, fine), coarse.statistics
         note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
@@ -166,17 +172,16 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         statistics, request, resolved = motion.statistics, self.request, True
         dt = statistics.step_s
         if request.step is not None:
-            z = self._initial(self._contacts(), loaded=False)
-            resolved = step_control.unresolved(self.stages, z, request.beam.length, dt) <= step_control.UNRESOLVED
+            share = step_control.unresolved(self.stages, self._unloaded(), request.beam.length, dt)
+            resolved = share <= step_control.UNRESOLVED
         notes = step_control.check_energy(motion, request.frequency_hz, request.feet, resolved)
         if statistics.unconverged:
             notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
         return replace(motion, notes=(*motion.notes, *notes))
 
-    def run(self, stages: list[Stage], progress: Progress) -> Motion:
-        """One run through these stages. Raises InputError."""
-        began, request, contacts = perf_counter(), self.request, self._contacts()
-        z = self._initial(contacts)
+    def run(self, stages: list[Stage], contacts: Contacts, z: ComplexArray, progress: Progress) -> Motion:
+        """One run through these stages from an initial state of contacts and free rows."""
+        began, request, contacts = perf_counter(), self.request, contacts.copy()
         p, depth = contacts.points, np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
         kinetic = self._kinetic(contacts)
         heights, pressures = contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(), (p[:, lay.STIFF] * depth)[None]
@@ -273,9 +278,11 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def _kinetic(self, contacts: Contacts) -> float:
         """Kinetic energy of sliders and feet, along and across the beam, J."""
         feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
-        inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
-        inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-        twice = masses @ contacts.sliders[:, lay.V] ** 2 + (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
+        twice = masses @ contacts.sliders[:, lay.V] ** 2
+        if len(feet):
+            inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
+            inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
+            twice += (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
         if contacts.law == lay.BILATERAL:
             twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
         return 0.5 * float(twice)

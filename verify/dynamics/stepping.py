@@ -5,6 +5,7 @@ from time import thread_time
 
 import msgspec
 import numpy as np
+from msgspec.structs import asdict, replace
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.dynamics import layout as lay
@@ -18,14 +19,14 @@ SPANS = 12
 """Largest number of spans between events in a step, as in `friction`."""
 RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
-REACH, FARTHEST = 8, 128
+REACH, FARTHEST = 2, 128
 """Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
 
 
 class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Sliders with their points on a beam, as arrays in the columns of `layout`; advanced in place by `run_stages`.
 
-    `contact_assembly` fills them in; a run continues from copies of `sliders`, `feet` and `contacts`.
+    `contact_assembly` fills them in once; every run advances a `copy`.
     """
 
     start: float
@@ -54,6 +55,10 @@ class Contacts(msgspec.Struct, eq=False, kw_only=True):
     """Whether the state is an equilibrium, with depths of the middle of the first step."""
     restitution: float | None = None
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
+
+    def copy(self) -> "Contacts":
+        """The same state in arrays of its own, to be advanced."""
+        return replace(self, **{k: v.copy() for k, v in asdict(self).items() if isinstance(v, np.ndarray)})
 
 
 def run_stages(
@@ -131,8 +136,8 @@ class Run:
         began, contacts, n = thread_time(), self.contacts, len(z)
         rows, drive = rows_of(stage, z), np.array([stage.omega, stage.origin, stage.unit_s], dtype=float)
         places = np.ascontiguousarray(stage.outputs(self.places).T) if self.deflections.shape[1] else np.zeros((0, 0))
-        columns = stage.columns(stage.edges[:1]).shape[0]
         own = n + stage.complex_rows
+        columns = own + 2 * stage.powers
         forced, loads, growth = np.zeros((0, columns - own)), np.zeros((4, 0)), np.zeros(0)
         if self.accounts and stage.forced is not None:
             forced, loads = stage.rows.accounts(stage.forced)
@@ -176,11 +181,9 @@ class Run:
             if reason in (lay.NOT_FINITE, lay.CHATTERS):
                 why = "diverged" if reason == lay.NOT_FINITE else "chatters"
                 break
-            began, last = thread_time(), first
-            self.reach = min(2 * self.reach, FARTHEST)
-            first = self._around(stage)
-            if reason == lay.OFF_PIECES and first == last:
-                first = None
+            if self.tally[lay.STEP] < stage.steps.n:
+                began, last, self.reach = thread_time(), first, min(2 * self.reach, FARTHEST)
+                first = None if (around := self._around(stage)) == last else around
         self.z = rows[lay.Z_RE] + 1j * rows[lay.Z_IM]
         if why == "end" and self.tally[lay.STEP] < stage.steps.n:
             if contacts.moving_load:
@@ -235,11 +238,11 @@ class Run:
     def _around(self, stage: Stage) -> tuple[int, int] | None:
         """(first, end) piece around all points; None where a point is off the beam."""
         edges, x = stage.edges - self.contacts.start, self.positions()
-        if x.min() < edges[0] or x.max() > edges[-1]:
+        if (least := x.min()) < edges[0] or (most := x.max()) > edges[-1]:
             return None
         pieces = len(edges) - 1
-        low, high = np.clip(np.searchsorted(edges, [x.min(), x.max()], side="right") - 1, 0, pieces - 1)
-        return max(int(low) - self.reach, 0), min(int(high) + 1 + self.reach, pieces)
+        low, high = (min(int(i) - 1, pieces - 1) for i in np.searchsorted(edges, [least, most], side="right"))
+        return max(low - self.reach, 0), min(high + 1 + self.reach, pieces)
 
     def _go_on(self, stage: Stage) -> None:
         """Advance the beam to the end of the stage after a moving load has left it."""

@@ -1,6 +1,7 @@
 """Validity of a run: the size of the coupling of sliders and beam, and of what no time step removes."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 NEAR = 1e-3
 """Spacing of the forces that represent a couple, over the smaller of 1/k and L/50."""
-Receptance = Callable[[float, Array], tuple[ComplexArray, ComplexArray]]
-"""(x, places) -> deflections at places under a unit force at x, m/N, and slopes under a unit couple, rad/(N m)."""
+Receptance = Callable[[Array], tuple[ComplexArray, ComplexArray]]
+"""places (n,) -> deflections under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
 
 
 class Coupling(Struct, frozen=True, kw_only=True):
@@ -65,8 +66,7 @@ def coupling_of(
     half = np.array([section_at(beam, x).surface_distance for x in starts])
     drive = [abs(stage.drive_shapes(places, derivative)[0]) for derivative in (0, 1)]
     normal, friction = np.zeros(len(places)), np.zeros(len(places))
-    for x, slider, lever in zip(starts, sliders, half, strict=True):
-        lifted, turned = receptance(x, places)
+    for slider, lever, lifted, turned in zip(sliders, half, *receptance(places), strict=True):
         with np.errstate(divide="ignore", invalid="ignore"):
             loaded = np.where(drive[0] > 0.0, slider.load * abs(lifted) / drive[0], np.inf)
         normal += slider.mass * omega**2 * abs(lifted) if slider.contact is None else loaded
@@ -83,12 +83,11 @@ def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptan
     """Receptance by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
 
-    def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
-        ends = ((basis.shapes(np.array([x]), derivative), basis.shapes(places, derivative)) for derivative in (0, 1))
-        lifted, turned = (np.asarray((compliance * here[:, 0]) @ there, dtype=complex) for here, there in ends)
+    def receptance(places: Array) -> tuple[ComplexArray, ComplexArray]:
+        shapes, hertz = [basis.shapes(places, derivative) for derivative in (0, 1)], omega / (2.0 * np.pi)
+        lifted, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
         if basis.tail is not None:
-            hertz = omega / (2.0 * np.pi)
-            turned += basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1)
+            turned += [basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1) for x in places.tolist()]
         return lifted, turned
 
     return receptance
@@ -99,14 +98,15 @@ def field_receptance(
 ) -> Receptance:
     """Receptance by steady fields of the model with damping ratio `damping` (None: loss factor). Raises InputError."""
 
-    def receptance(x: float, places: Array) -> tuple[ComplexArray, ComplexArray]:
-        forces = (PointForce(position=x),), couple(beam, x, frequency_hz)
-        fields = [steady_beam(model, count, beam, some, frequency_hz, damping).field for some in forces]
-        return fields[0].deflection(places), fields[1].slope(places)
+    def receptance(places: Array) -> tuple[ComplexArray, ComplexArray]:
+        loads = [((PointForce(position=x),), couple(beam, x, frequency_hz)) for x in places.tolist()]
+        fields = [[steady_beam(model, count, beam, one, frequency_hz, damping).field for one in pair] for pair in loads]
+        return np.array([f.deflection(places) for f, _ in fields]), np.array([f.slope(places) for _, f in fields])
 
     return receptance
 
 
+@lru_cache(maxsize=256)
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     """A unit couple at x, 1 N m, as five close forces from x inwards: a difference quotient of order 4.
 
@@ -121,12 +121,17 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
 
 
 def margins_of(request: "Request", stage: Stage) -> Margins:
-    """Margins of a run with last stage `stage`, except those that depend on time steps."""
+    """Margins of a run with last stage `stage`, except those that depend on time steps.
+
+    `lift_off` of point sliders is that of the run.
+    """
     beam, hertz, x = request.beam, request.frequency_hz, np.linspace(0.0, request.beam.length, 400)
-    falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
+    lift_off = 0.0
+    if request.feet or not request.sliders:
+        falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
+        lift_off = falling / request.gravity if request.gravity else inf
     square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
     turns = abs(lossless_wavenumber(beam, hertz)) * beam.length
-    lift_off = falling / request.gravity if request.gravity else inf
     return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
 
 

@@ -7,7 +7,7 @@ dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from math import pi, sqrt
 from typing import Any
 
@@ -197,7 +197,7 @@ class DiscreteModel(BeamModel):
             count=self.count,
             beam=self.beam,
             omegas=np.sqrt(values) * self._omega_unit,
-            loads=lambda position: np.asarray((self.load_rows(np.array([position])) @ vectors)[0]),
+            loads=cache(lambda position: np.asarray((self.load_rows(np.array([position])) @ vectors)[0])),
             turning_loads=lambda x: np.asarray((self.load_rows(np.array([x]), rotation=True) @ vectors)[0] / self.unit),
             method="all modes",
             ratios=ratios,

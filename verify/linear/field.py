@@ -130,7 +130,7 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
 
 def lossless_wavenumber(beam: Beam, frequency_hz: float) -> complex:
     """Wavenumber of the beam without losses, 1/m: real where a wave propagates."""
-    return wavenumber(replace(beam, loss_factor=0.0), frequency_hz)
+    return wavenumber(replace(beam, loss_factor=0.0) if beam.loss_factor else beam, frequency_hz)
 
 
 def travelling_wavenumber(beam: Beam, frequency_hz: float) -> float | None:

@@ -48,6 +48,7 @@ class ContactRange(NamedTuple):
     """Messages for a slider beyond the start, and beyond the end, of the range."""
 
 
+@lru_cache(maxsize=256)
 def contact_range(beam: Beam, x: float) -> ContactRange:
     """The contact range about x (m). Raises InputError off the beam."""
     distances, at = [piece.extreme_fibre for piece in beam.pieces], int(piece_at(beam, x))
@@ -69,7 +70,7 @@ def _came_to(x: float) -> str:
 def check_one_range(beam: Beam, positions: Sequence[float]) -> None:
     """Raise InputError for sliders at positions (m) between which the surface of the beam has a step."""
     first = contact_range(beam, positions[0])
-    for x in positions:
+    for x in positions[1:]:
         if contact_range(beam, x).ends != first.ends:
             raise InputError(
                 f"slider.position = {written(x)} m and {written(positions[0])} m are separated by a step of the "

@@ -1,6 +1,7 @@
 """The modal basis of a beam's motion in time: free modes, their shapes, and their loads by point forces."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from math import comb, factorial
 from typing import TypeAlias
 
@@ -90,9 +91,14 @@ def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int
     lengths = np.diff(edges[first : last + 1])
     middles = edges[first:last] + 0.5 * lengths
     parts = np.array([shapes(middles, d) * lengths**d / factorial(d) for d in range(degree + 1)])
+    return np.ascontiguousarray(np.einsum("kd,drp->pkr", _from_middle(degree), parts))
+
+
+@cache
+def _from_middle(degree: int) -> Array:
+    """Coefficients about xi = 0 from those about xi = 1/2, (degree + 1, degree + 1)."""
     powers = range(degree + 1)
-    shift = np.array([[comb(d, k) * (-0.5) ** (d - k) if d >= k else 0.0 for d in powers] for k in powers])
-    return np.ascontiguousarray(np.einsum("kd,drp->pkr", shift, parts))
+    return np.array([[comb(d, k) * (-0.5) ** (d - k) if d >= k else 0.0 for d in powers] for k in powers])
 
 
 def check_supported(beam: Beam) -> None:

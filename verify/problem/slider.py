@@ -95,6 +95,9 @@ class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             )
 
 
+ONE_POINT = (Foot(),)
+
+
 class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A point mass on the surface, driven by friction.
 
@@ -188,7 +191,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     @property
     def feet(self) -> tuple[Foot, ...]:
         """The feet; by default one of one point."""
-        return self.foot or (Foot(),)
+        return self.foot or ONE_POINT
 
     @property
     def steepness(self) -> float | None:
