@@ -171,14 +171,9 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def basis_of(
     beam: Beam, model: str, count: int | None, modes: int | None, line: str = "spline", loads: Sequence[PointLoad] = ()
 ) -> TimeBasis:
-    """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError.
-
-    A run has a basis of its own, whose shapes remember the last places at which stages, tables and checks asked.
-    """
+    """The free modes of a model by name, with nodes or elastic ends at moments among the loads. Raises InputError."""
     moments = tuple(load.position for load in loads if isinstance(load, PointMoment))
-    basis = _basis(MODELS.named(model), beam, count, modes, line, moments)
-    at = lru_cache(maxsize=8)(lambda x, derivative: basis.shapes(np.frombuffer(x), derivative))
-    return replace(basis, shapes=lambda x, derivative: at(np.asarray(x, dtype=float).tobytes(), derivative))
+    return _basis(MODELS.named(model), beam, count, modes, line, moments)
 
 
 @lru_cache(maxsize=2)  # of the runs of a study of sliders, steps or drives; 2000 modes have 160 MB
