@@ -82,7 +82,7 @@ def evaluate_chain_surface(
             along += factors[when, RATE, m + j]
         contacts[i, lay.MEAN] += along if spring else along * (4.0 if when == MIDDLE else 1.0) / 6.0
         if spring:
-            contacts[i, lay.RISE] += along
+            contacts[i, lay.SURFACE_DELTA_V] += along
         elif when == START:
             contacts[i, lay.START] += along
         elif when == END:
@@ -183,8 +183,8 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                 for b in range(sliders.shape[0] if spring else 0):
                     sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
                 for f in range(feet.shape[0]):
-                    feet[f, lay.HEIGHT] += 0.5 * dt * feet[f, lay.CLIMB]
-                    feet[f, lay.PITCH] += 0.5 * dt * feet[f, lay.TURN]
+                    feet[f, lay.HEIGHT] += 0.5 * dt * feet[f, lay.VELOCITY_Z]
+                    feet[f, lay.PITCH] += 0.5 * dt * feet[f, lay.PITCH_RATE]
                 for when in range(last):
                     if when != HALF and (when == MIDDLE or not spring):
                         evaluate_chain_surface(
@@ -218,7 +218,7 @@ def advance(  # noqa: PLR0912, PLR0915  # one step in its order, as `integrator.
                 contacts[i, lay.END] -= 2.0 * own
                 if spring:
                     across = product(i, TRANSVERSE, shapes, response)
-                    contacts[i, lay.RISE] -= own
+                    contacts[i, lay.SURFACE_DELTA_V] -= own
                     contacts[i, lay.CLOSING] -= across
                     contacts[i, lay.LIFT] -= points[i, lay.FACE] * across
             solve(dt, codes, sliders, feet, points, contacts, indices, shapes, response, couplings, spans, block,

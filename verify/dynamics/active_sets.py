@@ -38,7 +38,10 @@ def revise_limits(
     tries, worst, exceeds = False, 1.0, -1
     for i in range(points.shape[0]):
         touch, slider = contacts[i], sliders[indices[i, lay.OF_SLIDER]]
-        static, own = slider[lay.MU_STATIC] * touch[lay.NORMAL], 0.5 * dt * slider[lay.INVERSE_MASS] + touch[lay.OWN]
+        static, own = (
+            slider[lay.MU_STATIC] * touch[lay.NORMAL],
+            0.5 * dt * slider[lay.INVERSE_MASS] + touch[lay.SELF_RESPONSE],
+        )
         if slider[lay.MU_STATIC] <= slider[lay.MU] or points[i, lay.TANGENTIAL] > 0.0 or static <= 0.0:
             continue
         if touch[lay.GRIP] == SLIDES and spans[i, 0] == 0.0:
@@ -79,7 +82,7 @@ def law_residual(
         trial = point[lay.TANGENTIAL] * touch[lay.STRETCH] - spring * slip
         return 1.0, spring, force - trial, trial
     stuck = touch[lay.WAS_STUCK] > 0.0 or touch[lay.GRIP] == HOLDS
-    own = 0.5 * dt * slider[lay.INVERSE_MASS] + touch[lay.OWN] + 1e-300
+    own = 0.5 * dt * slider[lay.INVERSE_MASS] + touch[lay.SELF_RESPONSE] + 1e-300
     excess = slip - (sticking_slip(codes, slider, touch) if stuck else 0.0) + CREEP * own * force
     return CREEP * own, 1.0, excess, force - excess / own
 
@@ -87,14 +90,14 @@ def law_residual(
 @inline
 def mean_slip(i: int, slider: Array, touch: Array, shapes: Array, response: Array) -> float:
     """Mean slip of point i in the step under all forces, m/s."""
-    return float(slider[lay.V] + 0.5 * slider[lay.GAINED] - touch[lay.MEAN] - product(i, 0, shapes, response))
+    return float(slider[lay.V] + 0.5 * slider[lay.DELTA_V] - touch[lay.MEAN] - product(i, 0, shapes, response))
 
 
 @inline
 def add_friction(i: int, more: float, dt: float, slider: Array, touch: Array, shapes: Array, response: Array) -> None:
     """Add to the friction of point i, and what that adds to its slider and to the columns."""
     touch[lay.FRICTION] += more
-    slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
+    slider[lay.DELTA_V] += dt * slider[lay.INVERSE_MASS] * more
     add_response(i, 0, more, shapes, response)
 
 

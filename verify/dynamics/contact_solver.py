@@ -52,8 +52,8 @@ def set_normal_forces(
             add_response(i, TRANSVERSE, more, shapes, response)
         if law == lay.SPRING:
             foot, push = feet[k], dt * point[lay.FACE] * more
-            foot[lay.LIFTED] += push * foot[lay.INVERSE_FOOT_MASS]
-            foot[lay.TURNED] += push * point[lay.ARM] * foot[lay.INVERSE_INERTIA]
+            foot[lay.DELTA_VZ] += push * foot[lay.INVERSE_FOOT_MASS]
+            foot[lay.DELTA_PITCH_RATE] += push * point[lay.ARM] * foot[lay.INVERSE_INERTIA]
         largest = max(largest, abs(more))
     return largest
 
@@ -70,11 +70,11 @@ def solve(
     law, two_way, n = codes[lay.LAW], codes[lay.TWO_WAY] > 0, points.shape[0]
     for b in range(sliders.shape[0]):
         slider = sliders[b]
-        slider[lay.GAINED] = dt * (slider[lay.INVERSE_MASS] * slider[lay.EXTERNAL_FORCE] + slider[lay.TILT])
+        slider[lay.DELTA_V] = dt * (slider[lay.INVERSE_MASS] * slider[lay.EXTERNAL_FORCE] + slider[lay.TILT])
     for k in range(feet.shape[0]):
         foot = feet[k]
         press = foot[lay.FOOT_LOAD] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
-        foot[lay.LIFTED], foot[lay.TURNED] = dt * foot[lay.INVERSE_FOOT_MASS] * press, 0.0
+        foot[lay.DELTA_VZ], foot[lay.DELTA_PITCH_RATE] = dt * foot[lay.INVERSE_FOOT_MASS] * press, 0.0
     for j in range(len(response)):
         response[j] = 0.0
     alone = law == lay.SPRING and not two_way  # normal forces do not depend on friction
@@ -83,7 +83,7 @@ def solve(
         touch = contacts[i]
         touch[lay.WAS_FRICTION], touch[lay.WAS_STUCK] = touch[lay.FRICTION], touch[lay.STUCK]
         touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.SLIP], touch[lay.STUCK] = 0.0, 0.0, 0.0, 0.0
-        touch[lay.OWN] = own_product(i, 0, shapes) if two_way else 0.0
+        touch[lay.SELF_RESPONSE] = own_product(i, 0, shapes) if two_way else 0.0
         touch[lay.GRIP] = HOLDS if touch[lay.WAS_STUCK] > 0.0 else SLIDES
         coupled = coupled or points[i, lay.DASHPOT] > 0.0
     while True:
@@ -101,7 +101,7 @@ def solve(
                 more = force - touch[lay.FRICTION]
                 if more != 0.0:
                     touch[lay.FRICTION] = force
-                    slider[lay.GAINED] += dt * slider[lay.INVERSE_MASS] * more
+                    slider[lay.DELTA_V] += dt * slider[lay.INVERSE_MASS] * more
                     if two_way:
                         add_response(i, 0, more, shapes, response)
                     changed = max(changed, abs(more))

@@ -110,7 +110,7 @@ def advance_impacts(
             if touch[lay.DEPTH] == 0.0:
                 surface_at(time, done, slider[lay.X], free * slider[lay.V],
                     n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
-                foot[lay.HEIGHT], foot[lay.CLIMB] = motion[LEVEL], motion[CLIMB]
+                foot[lay.HEIGHT], foot[lay.VELOCITY_Z] = motion[LEVEL], motion[CLIMB]
                 touch[lay.DEPTH] = 1.0 if load + motion[ACCELERATION] > 0.0 else -1.0
             riding, low, high, x, v = touch[lay.DEPTH] > 0.0, 0.0, left, slider[lay.X], slider[lay.V]
             ended = False
@@ -121,7 +121,7 @@ def advance_impacts(
                 ax = 0.0 if riding else along
                 surface_at(time + done + s, done + s, x + free * (v + 0.5 * ax * s) * s, free * (v + ax * s),
                     n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
-                margin = foot[lay.HEIGHT] + (foot[lay.CLIMB] - 0.5 * load * s) * s - motion[LEVEL]
+                margin = foot[lay.HEIGHT] + (foot[lay.VELOCITY_Z] - 0.5 * load * s) * s - motion[LEVEL]
                 margin = load + motion[ACCELERATION] if riding else margin
                 if margin < 0.0:
                     high, ended = s, True
@@ -131,10 +131,10 @@ def advance_impacts(
                     break
             s = high
             if not riding:
-                moved, rise = (v + 0.5 * along * s) * s, (foot[lay.CLIMB] - 0.5 * load * s) * s
+                moved, rise = (v + 0.5 * along * s) * s, (foot[lay.VELOCITY_Z] - 0.5 * load * s) * s
                 slider[lay.X], slider[lay.V] = x + free * moved, v + along * s
                 foot[lay.HEIGHT] += rise
-                foot[lay.CLIMB] -= load * s
+                foot[lay.VELOCITY_Z] -= load * s
                 total[lay.EXTERNAL_WORK] += slider[lay.EXTERNAL_FORCE] * moved * (inverse > 0.0)
                 total[lay.LOAD_WORK] -= mass * load * rise
                 touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.STUCK] = 0.0, 0.0, 0.0
@@ -153,10 +153,10 @@ def advance_impacts(
                 surface_at(time + done + s, done + s, slider[lay.X], free * slider[lay.V],
                     n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
                 foot[lay.HEIGHT] = motion[LEVEL]
-                into = max(motion[CLIMB] - foot[lay.CLIMB], 0.0)
+                into = max(motion[CLIMB] - foot[lay.VELOCITY_Z], 0.0)
                 normal, share, speed, ramp = mass * (1.0 + restitution) * into, 1.0, motion[ALONG], motion[RAMP]
-                foot[lay.CLIMB] += normal / mass
-                total[lay.DAMPED] += 0.5 * normal * into * (1.0 - restitution)
+                foot[lay.VELOCITY_Z] += normal / mass
+                total[lay.CONTACT_LOSS] += 0.5 * normal * into * (1.0 - restitution)
             if share > 0.0:
                 v = slider[lay.V]
                 if riding:
@@ -179,21 +179,21 @@ def advance_impacts(
                     surface_at(time + done + s, done + s, slider[lay.X], free * after,
                         n_complex, rows, drive, table, edges, lever, columns, motion)  # fmt: skip
                     rise = motion[LEVEL] - foot[lay.HEIGHT]
-                    across = 0.5 * mass * (motion[CLIMB] ** 2 - foot[lay.CLIMB] ** 2) + mass * load * rise
-                    foot[lay.HEIGHT], foot[lay.CLIMB] = motion[LEVEL], motion[CLIMB]
+                    across = 0.5 * mass * (motion[CLIMB] ** 2 - foot[lay.VELOCITY_Z] ** 2) + mass * load * rise
+                    foot[lay.HEIGHT], foot[lay.VELOCITY_Z] = motion[LEVEL], motion[CLIMB]
                     total[lay.LOAD_WORK] -= mass * load * rise
                     total[lay.TOUCH_TIME] += s
                     total[lay.STICK_TIME] += s if touch[lay.STUCK] > 0.0 else 0.0
                     touch[lay.NORMAL], touch[lay.FRICTION], touch[lay.SURFACE] = normal, force, surface
-                    total[lay.HARDEST] = max(total[lay.HARDEST], abs(force))
+                    total[lay.MAX_FRICTION] = max(total[lay.MAX_FRICTION], abs(force))
                     total[lay.SURFACE_TIME] += s * surface
                 else:
                     across = normal * motion[CLIMB]
                 total[lay.SLOPE_WORK] += share * normal * ramp
-                total[lay.ACROSS] += across - share * normal * ramp
-                total[lay.LIFTED_BEAM] -= across - share * normal * ramp
-                total[lay.ALONG] += share * force * surface
-                total[lay.DISSIPATED] += share * force * (surface - mean)
+                total[lay.NORMAL_WORK] += across - share * normal * ramp
+                total[lay.NORMAL_ON_BEAM] -= across - share * normal * ramp
+                total[lay.TANGENTIAL_WORK] += share * force * surface
+                total[lay.FRICTION_LOSS] += share * force * (surface - mean)
                 total[lay.FRICTION_TIME] += share * force
                 total[lay.NORMAL_TIME] += share * normal
                 ax = slider[lay.EXTERNAL_FORCE] * (s if riding else 0.0)
@@ -210,10 +210,10 @@ def advance_impacts(
                     known = ROUNDING * (abs(motion[LEVEL]) + abs(motion[CLIMB]) * (time + dt))
                     fed = (1.0 - restitution**2) * height <= known and height <= LOW * known
                     if 2.0 * away <= REST * dt * contact_load or fed:
-                        touch[lay.DEPTH], foot[lay.CLIMB] = 1.0, motion[CLIMB]
-                        total[lay.DAMPED] += 0.5 * mass * away * away  # what is left of the bounce
-                        total[lay.ACROSS] -= mass * away * motion[CLIMB]
-                        total[lay.LIFTED_BEAM] += mass * away * motion[CLIMB]
+                        touch[lay.DEPTH], foot[lay.VELOCITY_Z] = 1.0, motion[CLIMB]
+                        total[lay.CONTACT_LOSS] += 0.5 * mass * away * away  # what is left of the bounce
+                        total[lay.NORMAL_WORK] -= mass * away * motion[CLIMB]
+                        total[lay.NORMAL_ON_BEAM] += mass * away * motion[CLIMB]
             if kind > 0.0:
                 row = tally[lay.EVENTS]
                 if row < events.shape[0]:

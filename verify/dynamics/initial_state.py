@@ -191,10 +191,10 @@ def set_down(contacts: Contacts, stage: Stage, z: ComplexArray, rise_of_step: Ar
     climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
     foot = contacts.indices[:, lay.OF_FOOT]
     if contacts.restitution is not None:  # a rigid point moves with the surface from the start
-        contacts.feet[:, lay.HEIGHT], contacts.feet[:, lay.CLIMB] = level, climb
+        contacts.feet[:, lay.HEIGHT], contacts.feet[:, lay.VELOCITY_Z] = level, climb
         return
     if not len(contacts.feet):
-        state[:, lay.RISE_RATE] = climb
+        state[:, lay.POINT_VZ] = climb
         normal = p[:, lay.LOAD]
     else:
         level = p[:, lay.IMAGE] * (level + rise_of_step) - p[:, lay.ARM] * contacts.feet[foot, lay.PITCH]

@@ -71,9 +71,9 @@ def update_bodies(
             touch[lay.FRICTION],
             dt * slider[lay.INVERSE_MASS],
             slider[lay.V],
-            touch[lay.OWN],
+            touch[lay.SELF_RESPONSE],
         )
-        gained, mean = slider[lay.GAINED] - mobility * force, v + 0.5 * slider[lay.GAINED]
+        gained, mean = slider[lay.DELTA_V] - mobility * force, v + 0.5 * slider[lay.DELTA_V]
         surface, compliance, steepness = touch[lay.SURFACE], mobility + 2.0 * own, slider[lay.STEEPNESS]
         bounded = codes[lay.TWO_WAY] > 0 and abs(touch[lay.SLIP]) <= 1e-13 * (abs(mean) + abs(surface))
         if mobility == 0.0 or force == 0.0 or bounded:
@@ -89,17 +89,17 @@ def update_bodies(
             mean = surface + spans[i, 1]
         slider[lay.X] += dt * (mean * slider[lay.FREE] + slider[lay.DRIFT])
         if bilateral and inertia > 0.0:
-            touch[lay.RISE_RATE] += dt * (touch[lay.NORMAL] - points[i, lay.LOAD]) / inertia
+            touch[lay.POINT_VZ] += dt * (touch[lay.NORMAL] - points[i, lay.LOAD]) / inertia
     for b in range(sliders.shape[0]):
         slider = sliders[b]
-        slider[lay.V] += slider[lay.GAINED]
+        slider[lay.V] += slider[lay.DELTA_V]
         slider[lay.X] += 0.5 * dt * slider[lay.V] * slider[lay.FREE] if spring else 0.0
     for k in range(feet.shape[0]):
         foot = feet[k]
-        foot[lay.CLIMB] += foot[lay.LIFTED]
-        foot[lay.TURN] += foot[lay.TURNED]
-        foot[lay.HEIGHT] += 0.5 * dt * foot[lay.CLIMB]
-        foot[lay.PITCH] += 0.5 * dt * foot[lay.TURN]
+        foot[lay.VELOCITY_Z] += foot[lay.DELTA_VZ]
+        foot[lay.PITCH_RATE] += foot[lay.DELTA_PITCH_RATE]
+        foot[lay.HEIGHT] += 0.5 * dt * foot[lay.VELOCITY_Z]
+        foot[lay.PITCH] += 0.5 * dt * foot[lay.PITCH_RATE]
     for i in range(points.shape[0]):
         spring_rate, touch, slider = points[i, lay.TANGENTIAL], contacts[i], sliders[indices[i, lay.OF_SLIDER]]
         if spring_rate > 0.0:  # stretched to the end of the step, as far as friction lets it
@@ -125,7 +125,7 @@ def add_sums(
     spring, two_way = codes[lay.LAW] == lay.SPRING, codes[lay.TWO_WAY] > 0
     for b in range(sliders.shape[0]):
         slider, add, total, normal, surface, touching, sticking, n = sliders[b], sums[b], 0.0, 0.0, 0.0, 0, 0, 0
-        mean, prescribed = slider[lay.V] + 0.5 * slider[lay.GAINED], slider[lay.INVERSE_MASS] == 0.0
+        mean, prescribed = slider[lay.V] + 0.5 * slider[lay.DELTA_V], slider[lay.INVERSE_MASS] == 0.0
         for i in range(points.shape[0]):
             if indices[i, lay.OF_SLIDER] != b:
                 continue
@@ -137,12 +137,12 @@ def add_sums(
                     continue
                 ramp = touch[lay.RAMP]
             else:
-                fall, inertia = (touch[lay.RISE_RATE] - touch[lay.CLOSING]) / dt, point[lay.INERTIA]
+                fall, inertia = (touch[lay.POINT_VZ] - touch[lay.CLOSING]) / dt, point[lay.INERTIA]
                 if codes[lay.LAW] == lay.BILATERAL and inertia > 0.0:
                     fall = (point[lay.LOAD] - push) / inertia
-                    add[lay.LOAD_WORK] -= dt * point[lay.LOAD] * (touch[lay.RISE_RATE] - 0.5 * dt * fall)
+                    add[lay.LOAD_WORK] -= dt * point[lay.LOAD] * (touch[lay.POINT_VZ] - 0.5 * dt * fall)
                     add[lay.SLOPE_WORK] += dt * push * touch[lay.SLOPE] * mean * slider[lay.FREE]
-                add[lay.FALL] = max(add[lay.FALL], fall)
+                add[lay.MAX_FALL] = max(add[lay.MAX_FALL], fall)
             if codes[lay.NORMAL_TWO_WAY] > 0:
                 answer = product(i, TRANSVERSE, shapes, response)
                 lift += face * answer
@@ -154,21 +154,23 @@ def add_sums(
                 surface, touching = surface + touch[lay.SURFACE], touching + 1
             sticking += 1 if touch[lay.STUCK] > 0.0 else 0
             loss = dt * (spans[i, 1] if spring and not two_way else -force * touch[lay.SLIP])
-            add[lay.DISSIPATED] += loss
-            add[lay.ALONG] += loss + dt * force * mean
+            add[lay.FRICTION_LOSS] += loss
+            add[lay.TANGENTIAL_WORK] += loss + dt * force * mean
             if loss < 0.0 and point[lay.TANGENTIAL] == 0.0:
-                balance[lay.GAINED_ENERGY] -= loss
+                balance[lay.CREATED] -= loss
             if two_way:
-                add[lay.ON_BEAM] -= dt * point[lay.WEIGHT] * force * touch[lay.SURFACE]
+                add[lay.FRICTION_ON_BEAM] -= dt * point[lay.WEIGHT] * force * touch[lay.SURFACE]
             if codes[lay.NORMAL_TWO_WAY] > 0 or spring:
                 across = dt * push * face * (lift - ramp)
-                add[lay.ACROSS] += across
-                add[lay.LIFTED_BEAM] -= point[lay.WEIGHT] * across
+                add[lay.NORMAL_WORK] += across
+                add[lay.NORMAL_ON_BEAM] -= point[lay.WEIGHT] * across
             if spring:
                 foot = feet[indices[i, lay.OF_FOOT]]
-                closing = touch[lay.CLOSING] - 0.5 * face * (foot[lay.LIFTED] + point[lay.ARM] * foot[lay.TURNED])
+                closing = touch[lay.CLOSING] - 0.5 * face * (
+                    foot[lay.DELTA_VZ] + point[lay.ARM] * foot[lay.DELTA_PITCH_RATE]
+                )
                 add[lay.SLOPE_WORK] += dt * push * face * ramp
-                add[lay.DAMPED] += dt * (push - point[lay.STIFF] * touch[lay.DEPTH]) * closing
+                add[lay.CONTACT_LOSS] += dt * (push - point[lay.STIFF] * touch[lay.DEPTH]) * closing
         if not prescribed:
             add[lay.SLOPE_WORK] += dt * mean * slider[lay.TILT] / slider[lay.INVERSE_MASS]
         add[lay.EXTERNAL_WORK] += dt * mean * (-total if prescribed else slider[lay.EXTERNAL_FORCE])
@@ -177,11 +179,11 @@ def add_sums(
         add[lay.TOUCH_TIME] += dt * touching / n
         add[lay.STICK_TIME] += dt * sticking / n
         add[lay.SURFACE_TIME] += dt * surface / max(touching, 1)
-        add[lay.HARDEST] = max(add[lay.HARDEST], abs(total))
+        add[lay.MAX_FRICTION] = max(add[lay.MAX_FRICTION], abs(total))
     for k in range(feet.shape[0]):
         foot = feet[k]
         force = foot[lay.FOOT_LOAD] - foot[lay.SPRING_RATE] * foot[lay.HEIGHT]
-        sums[feet_of[k], lay.LOAD_WORK] += dt * force * (foot[lay.CLIMB] + 0.5 * foot[lay.LIFTED])
+        sums[feet_of[k], lay.LOAD_WORK] += dt * force * (foot[lay.VELOCITY_Z] + 0.5 * foot[lay.DELTA_VZ])
 
 
 @jit(no_cpython_wrapper=True)
@@ -226,8 +228,8 @@ def sample(
         sample[lay.OUT_X], sample[lay.OUT_V] = slider[lay.X], v
         for s in range(4):  # friction, normal force and the shares of points, in one order in both
             sample[lay.OUT_FRICTION + s] = (done[lay.FRICTION_TIME + s] - last[lay.FRICTION_TIME + s]) / span
-        sample[lay.OUT_LOSS] = done[lay.DISSIPATED] - last[lay.DISSIPATED]
-        sample[lay.OUT_ALONG] = done[lay.ALONG] - last[lay.ALONG]
+        sample[lay.OUT_LOSS] = done[lay.FRICTION_LOSS] - last[lay.FRICTION_LOSS]
+        sample[lay.OUT_ALONG] = done[lay.TANGENTIAL_WORK] - last[lay.TANGENTIAL_WORK]
         for s in range(done.size):
             last[s] = done[s]
         for i in range(points.shape[0]):
@@ -294,8 +296,8 @@ def advance(
         for b in range(sliders.shape[0] if spring and n_steps > 0 else 0):
             sliders[b, lay.X] += 0.5 * dt * sliders[b, lay.V] * sliders[b, lay.FREE]
         for k in range(feet.shape[0] if n_steps > 0 else 0):
-            feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.CLIMB]
-            feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.TURN]
+            feet[k, lay.HEIGHT] += 0.5 * dt * feet[k, lay.VELOCITY_Z]
+            feet[k, lay.PITCH] += 0.5 * dt * feet[k, lay.PITCH_RATE]
         for when in range(last + 1):
             if when == HALF or (spring and when != MIDDLE and n_steps > 0) or (n_steps == 0 and when != START):
                 continue

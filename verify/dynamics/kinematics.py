@@ -151,7 +151,7 @@ def evaluate_surface(
         lever, length, v, free = point[lay.LEVER], edges[piece + 1] - edges[piece], slider[lay.V], slider[lay.FREE]
         x = slider[lay.X] + point[lay.OFFSET]
         if not spring:
-            gained = slider[lay.GAINED] * ahead / dt
+            gained = slider[lay.DELTA_V] * ahead / dt
             x += ahead * free * (v + 0.5 * gained)
             v += gained
             if follows:
@@ -182,13 +182,17 @@ def evaluate_surface(
                 continue
             ramp = image * slope * free * (v + lever * bend * v)
             lift = image * lift + ramp
-            touch[lay.WAS_DEPTH], touch[lay.DEPTH], touch[lay.RISE] = touch[lay.DEPTH], depth, along - touch[lay.BEFORE]
+            touch[lay.WAS_DEPTH], touch[lay.DEPTH], touch[lay.SURFACE_DELTA_V] = (
+                touch[lay.DEPTH],
+                depth,
+                along - touch[lay.BEFORE],
+            )
             touch[lay.MEAN], touch[lay.LIFT], touch[lay.RAMP] = along, lift, ramp
-            touch[lay.CLOSING] = face * (lift - foot[lay.CLIMB] - point[lay.ARM] * foot[lay.TURN])
+            touch[lay.CLOSING] = face * (lift - foot[lay.VELOCITY_Z] - point[lay.ARM] * foot[lay.PITCH_RATE])
         elif when == START:
             touch[lay.START], touch[lay.MEAN], touch[lay.LIFT] = along, share * along, share * lift
             if codes[lay.LAW] == lay.PRESCRIBED:
-                touch[lay.RISE_RATE] = climb
+                touch[lay.POINT_VZ] = climb
         else:
             touch[lay.MEAN] += share * along
             touch[lay.LIFT] += share * lift

@@ -14,13 +14,16 @@ OMEGA, ORIGIN, UNIT = range(3)
 """Drive (3,): angular frequency, seconds before the stage, T of the powers of time."""
 
 SLIDER = 11
-X, V, INVERSE_MASS, MU, MU_STATIC, STEEPNESS, EXTERNAL_FORCE, FREE, GAINED, DRIFT, TILT = range(SLIDER)
+X, V, INVERSE_MASS, MU, MU_STATIC, STEEPNESS, EXTERNAL_FORCE, FREE, DELTA_V, DRIFT, TILT = range(SLIDER)
 """Sliders (n, SLIDER). Filled by the caller: distance travelled and speed (state); 1/mass, 0 at a prescribed speed;
 kinetic and static coefficient of friction; K of the tanh law, 0 for Coulomb's; external force along x, N; 0 at a fixed
 position, else 1. Then the engine's: speed gained in the step; of kinematics "following" the mean drift along x and the
 mean acceleration by the turning tangent and gravity."""
 FOOT = 10
-HEIGHT, CLIMB, PITCH, TURN, INVERSE_FOOT_MASS, INVERSE_INERTIA, FOOT_LOAD, SPRING_RATE, LIFTED, TURNED = range(FOOT)
+(
+    HEIGHT, VELOCITY_Z, PITCH, PITCH_RATE, INVERSE_FOOT_MASS, INVERSE_INERTIA, FOOT_LOAD, SPRING_RATE, DELTA_VZ,
+    DELTA_PITCH_RATE,
+) = range(FOOT)  # fmt: skip
 """Feet (n, FOOT): height, its rate, pitch, its rate (state); 1/mass across, 1/inertia (0: no pitch), force along z, N,
 and stiffness of the preload spring, N/m. Then the engine's: what the step adds to the two rates."""
 POINT = 12
@@ -31,11 +34,11 @@ the beam; depth in the straight beam at foot height 0, m; 1/2 of a point between
 point without foot, N, and its mass across the beam, kg; half the thickness h/2 times face times image, m."""
 CONTACT = 30
 (
-    NORMAL, FRICTION, STUCK, DEPTH, STRETCH, RISE_RATE, SURFACE, BEFORE, LOSS, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
-    START, MEAN, END, RISE, WAS_DEPTH, WAS_STUCK, SLIP, OWN, TILT_END, DRIFT_END,
+    NORMAL, FRICTION, STUCK, DEPTH, STRETCH, POINT_VZ, SURFACE, BEFORE, LOSS, AT, ABOVE, SLOPE, LIFT, CLOSING, RAMP,
+    START, MEAN, END, SURFACE_DELTA_V, WAS_DEPTH, WAS_STUCK, SLIP, SELF_RESPONSE, TILT_END, DRIFT_END,
     AT_END, ABOVE_END, SPEED_END, WAS_FRICTION, GRIP,
 ) = range(CONTACT)  # fmt: skip
-"""Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, RISE_RATE, the
+"""Points, moving (n, CONTACT), zero at first except DEPTH (below zero: gap) and, of bilateral contact, POINT_VZ, the
 speed of the point across the beam, m/s. State: the first nine. NORMAL and FRICTION are means over the step, FRICTION
 acts on the slider; STRETCH is the elastic tangential displacement; SURFACE is the mean tangential speed of the surface
 over the step with all forces; BEFORE extrapolates it; LOSS is the energy that friction of a rigid point has dissipated
@@ -56,8 +59,8 @@ PRESCRIBED, BILATERAL, SPRING = range(3)
 
 SUMS = 17
 (
-    ACROSS, SLOPE_WORK, ALONG, EXTERNAL_WORK, LOAD_WORK, DISSIPATED, DAMPED, ON_BEAM, LIFTED_BEAM, FRICTION_TIME,
-    NORMAL_TIME, TOUCH_TIME, STICK_TIME, SURFACE_TIME, HARDEST, FALL, STORED,
+    NORMAL_WORK, SLOPE_WORK, TANGENTIAL_WORK, EXTERNAL_WORK, LOAD_WORK, FRICTION_LOSS, CONTACT_LOSS, FRICTION_ON_BEAM,
+    NORMAL_ON_BEAM, FRICTION_TIME, NORMAL_TIME, TOUCH_TIME, STICK_TIME, SURFACE_TIME, MAX_FRICTION, MAX_FALL, STORED,
 ) = range(SUMS)  # fmt: skip
 """Sums over all steps of every slider (n, SUMS). Works, J: of the surface across and up its slopes on the feet, along
 on the slider, of the external force or a prescribed speed, of preload and weight; friction loss; loss in dashpots and
@@ -65,7 +68,7 @@ impacts; work on the beam of friction, of normal forces. Integrals over time: fr
 force, share of points in contact and sticking, displacement of the surface under the points in contact (mean of
 points). The largest friction, N; the largest downward acceleration of the surface, m/s^2; energy of the springs, J."""
 BALANCE = 7
-DRIVEN, LOST, RESISTED, GAINED_ENERGY, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
+DRIVEN, LOST, RESISTED, CREATED, SWEEPS, UNCONVERGED, RESIDUAL = range(BALANCE)
 """Balance (BALANCE,): work of the drive, loss in modes and circuits, of it in circuits, J (with ACCOUNTS); energy that
 friction created, the sum of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution
 did not converge; largest residual of a step, N."""

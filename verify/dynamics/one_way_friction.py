@@ -21,7 +21,7 @@ def slope_of_friction(
     """Derivative of a point's friction by the gain of its slider; `work` gets STOP and the bounds of the force."""
     kinetic, v, steepness = slider[lay.MU] * touch[lay.NORMAL], slider[lay.V], slider[lay.STEEPNESS]
     static, stuck = slider[lay.MU_STATIC] * touch[lay.NORMAL], touch[lay.WAS_STUCK] > 0.0
-    start, rise, mobility, work[STOP] = work[START], touch[lay.RISE], dt * slider[lay.INVERSE_MASS], gained
+    start, rise, mobility, work[STOP] = work[START], touch[lay.SURFACE_DELTA_V], dt * slider[lay.INVERSE_MASS], gained
     if point[lay.TANGENTIAL] > 0.0:
         slip, limit = v + 0.5 * gained - touch[lay.MEAN], friction_limit(slider, touch)
         force, soft, stiffness = elastic_force(dt, slip, 0.0, limit, kinetic, steepness, point, touch)
@@ -54,22 +54,24 @@ def solve_one_way_friction(
     while first > 0 and indices[first - 1, lay.OF_SLIDER] == indices[last, lay.OF_SLIDER]:
         first -= 1
     mobility, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
-    pulled, gained, limit, rest, resting = slider[lay.GAINED], slider[lay.GAINED], 0.0, 0.0, False
+    pulled, gained, limit, rest, resting = slider[lay.DELTA_V], slider[lay.DELTA_V], 0.0, 0.0, False
     for i in range(first, last + 1):
         touch, normal = contacts[i], contacts[i, lay.NORMAL]
-        start = v - touch[lay.MEAN] + 0.5 * touch[lay.RISE]
+        start = v - touch[lay.MEAN] + 0.5 * touch[lay.SURFACE_DELTA_V]
         spans[i, START] = start
         limit += mobility * normal * slider[lay.MU_STATIC]
         gained += mobility * touch[lay.WAS_FRICTION]
         if normal > 0.0 and (touch[lay.WAS_STUCK] > 0.0 or abs(start) <= 1e-13 * mobility * slider[lay.MU] * normal):
-            rest, resting = touch[lay.RISE] - start, True
+            rest, resting = touch[lay.SURFACE_DELTA_V] - start, True
     low, high = pulled - 1.001 * limit, pulled + 1.001 * limit
     gained = min(max(rest if resting else gained, low), high)  # between the limits of friction a point at rest stays
     late = max(1.0 - 2.0 / (limit * steepness + 1e-300), 0.0)
     least, most, miss, exact = 0.0, 0.0, 0.0, steepness > 0.0 and first == last and points[last, lay.TANGENTIAL] == 0.0
     if exact:
         kinetic, late = slider[lay.MU] * contacts[last, lay.NORMAL], 0.0
-        least = tanh_force(spans[last, START], contacts[last, lay.RISE] - pulled, mobility, kinetic, steepness)
+        least = tanh_force(
+            spans[last, START], contacts[last, lay.SURFACE_DELTA_V] - pulled, mobility, kinetic, steepness
+        )
         spans[last, 0], spans[last, LEAST], spans[last, MOST], gained = (
             0.0,
             least,
@@ -101,13 +103,13 @@ def solve_one_way_friction(
     for i in range(first, last + 1):
         contacts[i, lay.FRICTION] = spans[i, LEAST] + share * (spans[i, MOST] - spans[i, LEAST])
         total += contacts[i, lay.FRICTION]
-    slider[lay.GAINED] = pulled + mobility * total
-    mean = v + 0.5 * slider[lay.GAINED]
+    slider[lay.DELTA_V] = pulled + mobility * total
+    mean = v + 0.5 * slider[lay.DELTA_V]
     for i in range(first, last + 1):
         touch, work = contacts[i], spans[i]
         force, kinetic = touch[lay.FRICTION], slider[lay.MU] * touch[lay.NORMAL]
         start, slip = work[START], mean - touch[lay.MEAN]
-        end, loss = start + gained - touch[lay.RISE], -force * slip
+        end, loss = start + gained - touch[lay.SURFACE_DELTA_V], -force * slip
         if points[i, lay.TANGENTIAL] > 0.0:
             pass
         elif steepness > 0.0:
@@ -117,4 +119,4 @@ def solve_one_way_friction(
             before = abs(start) / (max(mobility * (kinetic + side * force), 0.0) + abs(start - end) + 1e-300)
             loss = 0.5 * kinetic * (abs(start) * before + abs(end) * (1.0 - before))
         touch[lay.SLIP], work[1] = slip, loss
-    return abs(gained - slider[lay.GAINED]) / mobility if mobility > 0.0 else 0.0
+    return abs(gained - slider[lay.DELTA_V]) / mobility if mobility > 0.0 else 0.0

@@ -95,12 +95,12 @@ def normal_force(
         return float(point[lay.LOAD])
     if codes[lay.LAW] == lay.BILATERAL:  # momentum of the step: the point has the surface's speed at its end
         inertia = point[lay.INERTIA] / dt
-        climb = touch[lay.RAMP] * (slider[lay.V] + slider[lay.GAINED] - touch[lay.SPEED_END]) + touch[lay.CLOSING]
+        climb = touch[lay.RAMP] * (slider[lay.V] + slider[lay.DELTA_V] - touch[lay.SPEED_END]) + touch[lay.CLOSING]
         if codes[lay.NORMAL_TWO_WAY] > 0:
             own = couplings[1, i, i]
             for j in range(points.shape[0]):
                 climb -= couplings[0, i, j] * contacts[j, lay.FRICTION] + couplings[1, i, j] * contacts[j, lay.NORMAL]
-        load = point[lay.LOAD] + inertia * (climb + own * n - touch[lay.RISE_RATE])
+        load = point[lay.LOAD] + inertia * (climb + own * n - touch[lay.POINT_VZ])
         return float(load / (1.0 + inertia * own))
     depth, was, dashpot = touch[lay.DEPTH], touch[lay.WAS_DEPTH], point[lay.DASHPOT]
     if depth <= 0.0:
@@ -110,7 +110,7 @@ def normal_force(
         dashpot *= 0.5 + depth / (depth - was) if was <= 0.0 else 1.0
         foot, arm = feet[k], point[lay.ARM]
         own = 0.5 * dt * (foot[lay.INVERSE_FOOT_MASS] + arm * arm * foot[lay.INVERSE_INERTIA])
-        closing = touch[lay.CLOSING] - 0.5 * point[lay.FACE] * (foot[lay.LIFTED] + arm * foot[lay.TURNED])
+        closing = touch[lay.CLOSING] - 0.5 * point[lay.FACE] * (foot[lay.DELTA_VZ] + arm * foot[lay.DELTA_PITCH_RATE])
         if codes[lay.NORMAL_TWO_WAY] > 0:
             closing += product(i, TRANSVERSE, shapes, response)
             own += own_product(i, TRANSVERSE, shapes)
@@ -128,7 +128,7 @@ def friction_limit(slider: Array, touch: Array) -> float:
 def slip_at_start(codes: Indices, slider: Array, touch: Array) -> float:
     """Slip s_0 at the start of the step from its mean s and end e without contact forces, 2 s - e, m/s."""
     if codes[lay.LAW] == lay.SPRING:
-        return float(slider[lay.V] - touch[lay.MEAN] + 0.5 * touch[lay.RISE])
+        return float(slider[lay.V] - touch[lay.MEAN] + 0.5 * touch[lay.SURFACE_DELTA_V])
     return float(slider[lay.V] - 2.0 * touch[lay.MEAN] + touch[lay.END])
 
 
@@ -151,11 +151,11 @@ def friction_force(
     kinetic, static, own, others = slider[lay.MU] * normal, slider[lay.MU_STATIC] * normal, 0.0, 0.0
     mobility, v, steepness = dt * slider[lay.INVERSE_MASS], slider[lay.V], slider[lay.STEEPNESS]
     if codes[lay.TWO_WAY] > 0:
-        own = touch[lay.OWN]
+        own = touch[lay.SELF_RESPONSE]
         others = product(i, 0, shapes, response) + own * force
     compliance, gained, was_stuck = (
         mobility + 2.0 * own,
-        slider[lay.GAINED] - mobility * force,
+        slider[lay.DELTA_V] - mobility * force,
         touch[lay.WAS_STUCK],
     )
     mean = touch[lay.MEAN] + others
@@ -170,7 +170,7 @@ def friction_force(
         force = 0.0
     else:
         if codes[lay.LAW] == lay.SPRING:
-            rise = touch[lay.RISE] + 2.0 * others
+            rise = touch[lay.SURFACE_DELTA_V] + 2.0 * others
             start, a0, a1 = mean - 0.5 * rise, rise - gained, rise - gained
         else:  # a parabola of exact mean through the speeds at both ends
             start, end = touch[lay.START], touch[lay.END] + 2.0 * others

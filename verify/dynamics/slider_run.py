@@ -29,9 +29,14 @@ COLUMNS = {
 }  # fmt: skip
 """Column of the engine's samples by field of `Motion`."""
 WORKS = {
-    "slope_work": lay.SLOPE_WORK, "tangential_work": lay.ALONG, "normal_work": lay.ACROSS, "contact_loss": lay.DAMPED,
-    "friction_loss": lay.DISSIPATED, "friction_on_beam": lay.ON_BEAM, "normal_on_beam": lay.LIFTED_BEAM,
-}  # fmt: skip
+    "slope_work": lay.SLOPE_WORK,
+    "tangential_work": lay.TANGENTIAL_WORK,
+    "normal_work": lay.NORMAL_WORK,
+    "contact_loss": lay.CONTACT_LOSS,
+    "friction_loss": lay.FRICTION_LOSS,
+    "friction_on_beam": lay.FRICTION_ON_BEAM,
+    "normal_on_beam": lay.NORMAL_ON_BEAM,
+}
 """Column of the engine's sums by term of `EnergyBalance`."""
 SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *COLUMNS)
 Progress = Callable[[float], None]
@@ -134,7 +139,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         prescribed = contacts.sliders[:, lay.INVERSE_MASS] == 0.0
         contacts.sliders[:, lay.X] = state.sliders[:, 0]
         contacts.sliders[:, lay.V] = np.where(prescribed, contacts.sliders[:, lay.V], state.sliders[:, 1])
-        contacts.feet[:, : lay.TURN + 1], contacts.contacts[:] = state.feet, state.points
+        contacts.feet[:, : lay.PITCH_RATE + 1], contacts.contacts[:] = state.feet, state.points
         return contacts, z
 
     def converged(self, progress: Progress) -> Motion:
@@ -202,12 +207,16 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         seconds, sums, margins = end - stages[0].origin, recorded.sums, self.margins
         mean = 1.0 / seconds if seconds > 0.0 else float("nan")
         if not request.feet:
-            fall = float(sums[:, lay.FALL].max())
+            fall = float(sums[:, lay.MAX_FALL].max())
             margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
         offsets = np.array(request.starts) - request.starts[0]
         lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
         left = recorded.stopped not in (END, "diverged", "chatters")
-        state = contacts.sliders[:, [lay.X, lay.V]], contacts.feet[:, : lay.TURN + 1].copy(), contacts.contacts.copy()
+        state = (
+            contacts.sliders[:, [lay.X, lay.V]],
+            contacts.feet[:, : lay.PITCH_RATE + 1].copy(),
+            contacts.contacts.copy(),
+        )
 
         def each(values: Array) -> Any:
             """Values of all sliders of a sequence, or of the single slider."""
@@ -231,7 +240,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             point_offsets=p[:, lay.OFFSET] - offsets[contacts.indices[:, lay.OF_SLIDER]],
             events=recorded.events,
             mean_friction=each(mean * sums[:, lay.FRICTION_TIME]),
-            largest_friction=each(sums[:, lay.HARDEST]),
+            largest_friction=each(sums[:, lay.MAX_FRICTION]),
             mean_surface_speed=each(mean * sums[:, lay.SURFACE_TIME]),
             coupling=self.coupling,
             margins=margins,
@@ -282,19 +291,19 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if len(feet):
             inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
             inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-            twice += (inertia * feet[:, [lay.CLIMB, lay.TURN]] ** 2).sum()
+            twice += (inertia * feet[:, [lay.VELOCITY_Z, lay.PITCH_RATE]] ** 2).sum()
         if contacts.law == lay.BILATERAL:
-            twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.RISE_RATE] ** 2
+            twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.POINT_VZ] ** 2
         return 0.5 * float(twice)
 
 
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
     s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
-    work = s[lay.ACROSS] + s[lay.ALONG] + s[lay.SLOPE_WORK] + s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
-    residual = work - s[lay.DISSIPATED] - s[lay.DAMPED] - slider - stored
+    work = s[lay.NORMAL_WORK] + s[lay.TANGENTIAL_WORK] + s[lay.SLOPE_WORK] + s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
+    residual = work - s[lay.FRICTION_LOSS] - s[lay.CONTACT_LOSS] - slider - stored
     driven, lost, resisted = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST, lay.RESISTED))
-    beam = driven + (s[lay.ON_BEAM] + s[lay.LIFTED_BEAM]) * two_way - lost - kinetic - elastic
+    beam = driven + (s[lay.FRICTION_ON_BEAM] + s[lay.NORMAL_ON_BEAM]) * two_way - lost - kinetic - elastic
     return EnergyBalance(
         kinetic=kinetic,
         elastic=elastic,
@@ -306,7 +315,7 @@ def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: b
         circuit_loss=resisted,
         **{name: float(s[column]) for name, column in WORKS.items()},
         initial=initial,
-        created=float(recorded.balance[lay.GAINED_ENERGY]),
+        created=float(recorded.balance[lay.CREATED]),
         slider_residual=float(residual),
         residual=float(beam if accounts and abs(beam) > abs(residual) else residual),
     )

@@ -120,7 +120,7 @@ class Run:
         p, c, feet, indices = self.contacts.points, self.contacts.contacts, self.contacts.feet, self.contacts.indices
         if len(feet):
             foot = feet[indices[:, lay.OF_FOOT]]
-            climb = foot[:, lay.CLIMB] + p[:, lay.ARM] * foot[:, lay.TURN]
+            climb = foot[:, lay.VELOCITY_Z] + p[:, lay.ARM] * foot[:, lay.PITCH_RATE]
             depth = np.maximum(c[:, lay.DEPTH] + 0.5 * dt * p[:, lay.FACE] * (c[:, lay.LIFT] - climb), 0.0)
             np.add.at(self.sums[:, lay.STORED], indices[:, lay.OF_SLIDER], 0.5 * p[:, lay.STIFF] * depth**2)
         for name in ("samples", "heights", "pressures", "deflections"):
