@@ -23,7 +23,7 @@ SETTLED = 1e-10
 AT_LIMIT = 4
 """Column of `spans` in `solve_active_sets`: 1 or -1 at a limit of friction, else 0."""
 ROUNDS = 10
-"""Rounds over the number of points: twice the most of runs with up to 31 points on 8 modes."""
+"""Rounds over the number of points, beside 20: with up to 31 points on 8 modes every step converged within them."""
 
 
 @inline

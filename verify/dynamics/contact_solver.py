@@ -25,8 +25,8 @@ SWEEPS = 24
 TOLERANCE = 1e-12
 """Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
 PASSES = 50
-"""Rounds of friction at given normal forces and of normal forces at given friction, which reduce the error by the
-coefficient of friction times the slope of the surface, below a half."""
+"""Rounds of friction at given normal forces and of normal forces at given friction. The one acts on the other by the
+slope of the surface and by dashpots, both small; a step that needs more counts as not converged."""
 
 
 @jit(no_cpython_wrapper=True)

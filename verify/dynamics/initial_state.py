@@ -14,7 +14,7 @@ from verify.linear.time_basis import Ratio, TimeBasis
 
 PASSES = 40
 """Most iterations of an equilibrium. The compliance of the unloaded beam is that of the loaded one up to the rotation
-of its surface: an iteration reduces the error by a factor of 10 to 1000."""
+of its surface, so that a few iterations end in practice."""
 SETTLED = 1e-14
 """Change of the surface, over its largest displacement, at which an equilibrium is at its rounding."""
 
@@ -177,8 +177,7 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
 def set_down(contacts: Contacts, stage: Stage, z: ComplexArray, rise_of_step: Array | float = 0.0) -> None:
     """Set sliders in equilibrium on the surface of free rows z: places of feet, depths, friction, normal velocities.
 
-    `rise_of_step` is that of `static_deflection`.
-    Raises InputError for a foot without load.
+    `rise_of_step` is that of `static_deflection`. Raises InputError for a foot without load.
     """
     p, state, x = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
     lever, factors, rates = p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)

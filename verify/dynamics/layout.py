@@ -46,7 +46,7 @@ so far. The others are of one step: material under the point and the point itsel
 under it, rate at which the gap closes, share of the rise by slopes; speed of the surface at the start, in the mean and
 at the end without contact forces, its gain; last depth and sticking; mean slip v - s; own response; acceleration and
 drift of "following" at the end without forces; material under the point, point and its speed along at the end; last
-friction; which limit of friction holds, `GRIP` of `contact_solver`."""
+friction; which limit of friction holds, `GRIP` of `point_forces`."""
 OF_SLIDER, OF_FOOT, PIECE = range(3)
 """Indices (n_points, 3): slider, foot (0 without feet) and piece of the beam of every point."""
 
