@@ -8,7 +8,7 @@ from reference.slider import driven, hermite_modes, smooth
 from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Foot, PointForce, Slider, simulate
-from verify.dynamics.layout import LANDS
+from verify.contact.state import LANDS
 from verify.problem.cross_section import Section
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)

@@ -8,8 +8,7 @@ import reference.motor as by
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from msgspec.structs import replace
 
-from verify.dynamics import layout as records
-from verify.dynamics.layout import LANDS, LEAVES
+from verify.contact.state import LANDS, LEAVES
 from verify.exact.contact import impact
 from verify.problem.slider import Contact, Slider
 
@@ -91,7 +90,7 @@ def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     feet[0, 0] = amplitude * (sin(bounce.phase) + speed * flown - 0.5 * flown**2 / ratio)
     feet[0, 1] = amplitude * OMEGA * (speed - flown / ratio)
     touch = before.end.contact.points.copy()
-    touch[0, records.DEPTH] = -1.0  # in the air
+    touch["depth"] = -1.0  # in the air
     went = replace(before, end=replace(before.end, contact=replace(before.end.contact, feet=feet, points=touch)))
     asked = {"prescribed_speed": held, "samples": periods + 1, "continue_from": went}
     run = on_strip(slider, amplitude, periods=periods, steps=64, **asked)
