@@ -135,7 +135,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return contacts, z
         state = before.contact
         if state.points.shape != contacts.contacts.shape or len(state.feet) != len(contacts.feet):
-            raise InputError("continue_from: its feet differ from slider.foot, give both runs the same slider")
+            raise InputError("start: its feet differ from slider.foot, give both runs the same slider")
         prescribed = contacts.sliders[:, lay.INVERSE_MASS] == 0.0
         contacts.sliders[:, lay.X] = state.sliders[:, 0]
         contacts.sliders[:, lay.V] = np.where(prescribed, contacts.sliders[:, lay.V], state.sliders[:, 1])
