@@ -242,8 +242,9 @@ DRIVEN = Excitation(PAIR, STRIP_HERTZ)
 def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
     first = replace(LIGHT, coupling="one-way", foot=(Foot(length=0.044, points=23),))
     other = replace(first, mass=0.034, mu=0.11, position=0.331, foot=(Foot(length=0.03, points=11),))
-    both, points = simulate(STRIP, DRIVEN, 4e-3, slider=[first, other], keep=Keep(samples=18), **KEPT), 0
-    for number, slider in enumerate((first, other)):
+    pulled = PrescribedSlider(replace(first, position=0.271), speed=0.0031)
+    both, points = simulate(STRIP, DRIVEN, 4e-3, slider=[first, other, pulled], keep=Keep(samples=18), **KEPT), 0
+    for number, slider in enumerate((first, other, pulled)):
         asked = {"step": both.statistics.step_s, "keep": Keep(samples=18), **KEPT}
         alone = simulate(STRIP, DRIVEN, 4e-3, slider=slider, **asked)
         own = slice(points, points := points + len(alone.point_offsets))

@@ -107,16 +107,15 @@ def sliders_of(sliders: Sliders | None) -> tuple[PrescribedSlider, ...]:
 
 
 class Step(msgspec.Struct, frozen=True):
-    """Time step of a slider, by its length or by the number in a drive period; default: automatic.
+    """Time step of a slider, by its length or by the least number in a drive period, by default 64, with feet 61.
 
-    Automatic steps are at most 64 in a drive period, with feet 61, and resolve the contact and the modes that the start
-    excites. Raises InputError.
+    Without a length steps also resolve the contact and the modes that the start excites. Raises InputError.
     """
 
     seconds: Annotated[float, unit("s", gt=0)] | None = None
     """The step, s."""
     per_period: Annotated[int, Meta(ge=1)] | None = None
-    """Least number of steps in a drive period, which contact and modes may increase."""
+    """Least number of steps in a drive period."""
 
     def __post_init__(self) -> None:
         validate(self, "step")
