@@ -4,7 +4,7 @@ The joints define the paper's C2 contact line over the material coordinate; the 
 shortening of the chain. Steps, margins, coupling and result are those of a run on the linear chain.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace as changed
 from time import perf_counter, thread_time
 from types import SimpleNamespace
@@ -18,18 +18,17 @@ from verify.chain.kinematics import at_rest, energies
 from verify.chain.motion import from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
+from verify.dynamics.arguments import Excitation, Keep, Sliders, Step, is_sequence
 from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equilibrium, set_down
 from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
-from verify.dynamics.request import request_of
+from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import Motion
 from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
 from verify.dynamics.stepping import Assembly, Run, response_of
-from verify.errors import InputError
-from verify.linear.positions import Forces, Numbers
+from verify.errors import InputError, shown
 from verify.options import Links, Load
 from verify.problem.beam import Beam
-from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
 from verify.validation import check_integer, check_number
 
@@ -42,21 +41,16 @@ CHUNK, MARCHED = 20_000, 200  # steps between two interrupts, one-way and two-wa
 
 def slide_on_chain(
     beam: Beam,
-    forces: Forces,
-    frequency_hz: float,
+    excitation: Excitation,
     duration: float,
     *,
-    slider: Slider | Sequence[Slider],
+    slider: Sliders,
     count: int,
     links: Links = "rigid",
     load: Load = "reciprocal",
     joint_dashpot: float = 0.0,
-    prescribed_speed: float | Sequence[float | None] | None = None,
-    fixed_position: bool | Sequence[bool] = False,
-    at: Numbers = (),
-    samples: int = 201,
-    step: float | None = None,
-    steps_per_period: int | None = None,
+    step: Step | float | None = None,
+    keep: Keep = KEEP,
     tolerance: float = 1e-9,
     progress: Callable[[float], None] = lambda part: None,
 ) -> Motion:
@@ -67,18 +61,34 @@ def slide_on_chain(
     of `tolerance`; two-way by steps that resolve its highest mode, from its equilibrium under feet. `coupling` and
     `margins` are those of the linear chain; energies of stretching links are not in the balance.
 
-    Raises InputError as `simulate` does; for hard contact, a raw contact line and an unresolved motion of the chain;
-    with two-way coupling for normal = "bilateral", stretching links, and a preload that depends on deflection.
+    Raises InputError as `simulate` does; for forces that grow and circuits; for hard contact, a raw contact line and an
+    unresolved motion of the chain; with two-way coupling for normal = "bilateral", stretching links, and a preload that
+    depends on deflection.
     """
     began = perf_counter()
     check_integer("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
-    request = request_of(
-        beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
-        soft_start_periods=0.0, envelope=(), modal_damping=None, slider=slider, prescribed_speed=prescribed_speed,
-        fixed_position=fixed_position, at=at, samples=samples, step=step, steps_per_period=steps_per_period,
-        continue_from=None,
-    )  # fmt: skip
+    request = request_of(beam, excitation, duration, count=count, slider=slider, start="rest", step=step, keep=keep)
+    _check(excitation, request, links)
+    system = build_system(
+        beam, count, request.forces, request.frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
+    )
+    basis = basis_of(beam, "segment", count, None, "spline")
+    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
+    notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
+    run = ChainRun.of(request, basis, stages, notes, sequence=is_sequence(slider))
+    up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
+    line = contact_line(straight_chain(system), up)
+    motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
+    statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
+    return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
+
+
+def _check(excitation: Excitation, request: Request, links: Links) -> None:
+    """Raise InputError for an excitation and sliders that the nonlinear chain does not have."""
+    for name in ("soft_start_periods", "envelope", "circuits"):
+        if value := getattr(excitation, name):
+            raise InputError(f"{name} = {shown(value)}: a nonlinear chain starts under sudden forces, leave it out")
     if not request.sliders:
         raise InputError("slider is missing: give one, or `verify.chain.motion.from_rest` for a chain alone")
     for one in request.sliders:
@@ -95,18 +105,6 @@ def slide_on_chain(
                 "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
                 "a nonlinear chain is under constant loads, give coupling = 'one-way'"
             )
-    system = build_system(
-        beam, count, request.forces, frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
-    )
-    basis = basis_of(beam, "segment", count, None, "spline")
-    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
-    notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
-    run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
-    up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
-    line = contact_line(straight_chain(system), up)
-    motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
-    statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
-    return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
 
 
 class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):

@@ -129,7 +129,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return assembly, z
         state = before.contact
         if state.points.shape != assembly.contacts.shape or len(state.feet) != len(assembly.feet):
-            raise InputError("continue_from: its feet differ from slider.foot, give both runs the same slider")
+            raise InputError("start: its feet differ from slider.foot, give both runs the same slider")
         prescribed = assembly.sliders["inverse_mass"] == 0.0
         assembly.sliders["x"] = state.sliders[:, 0]
         assembly.sliders["v"] = np.where(prescribed, assembly.sliders["v"], state.sliders[:, 1])
