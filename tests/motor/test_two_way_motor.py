@@ -358,3 +358,13 @@ def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
         assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
     with pytest.raises(InputError, match=r"beam\.supports"):
         simulate(bar(), excitation, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)
+
+
+@pytest.mark.parametrize(("points", "preload", "stiffness"), [(3, 816.0, 1.2e6), (5, 586.0, 7.8e6)])
+def test_a_preload_that_has_no_equilibrium_within_small_slopes_is_refused(points, preload, stiffness):
+    strip = Beam(length=0.3, width=0.012, thickness=0.0003, youngs_modulus=70e9, density=2700.0)
+    foot, contact = Foot(length=0.03, points=points), Contact(stiffness=stiffness, damping=3.0)
+    slider = Slider(mass=0.02, mu=0.3, law="coulomb", contact=contact, foot=(foot,), preload=preload)
+    drive = Excitation(PointForce(position=0.05, amplitude=0.1), 400.0)
+    with pytest.raises(InputError, match=r"slider\.preload"):
+        simulate(strip, drive, 1e-5, count=30, slider=slider, start="rest", keep=Keep(samples=2), step=1e-6)

@@ -38,7 +38,7 @@ def directions(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -
     n, largest = theta.size, 0.0
     for i in range(n):
         largest = max(largest, abs(theta[i]))
-    small, x, y, vx, vy, rise, climb = largest <= 0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    small, x, y, vx, vy, tip_y, tip_rate = largest <= 0.4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         if small:  # series to rounding, at a third of the time
             z = theta[i] * theta[i]
@@ -49,11 +49,11 @@ def directions(theta: Array, omega: Array, links: Array, pivot: int, w: Array) -
             c, s = np.cos(theta[i]), np.sin(theta[i])
         w[i, COS], w[i, SIN] = c, s
         if i == pivot:
-            rise, climb, x, y, vx, vy = y, vy, 0.0, 0.0, 0.0, 0.0
+            tip_y, tip_rate, x, y, vx, vy = y, vy, 0.0, 0.0, 0.0, 0.0
         length = 2.0 * links[i, HALF]
         swing = length * omega[i]
         x, y, vx, vy = x + length * c, y + length * s, vx - swing * s, vy + swing * c
-    return rise, climb, x, y, vx, vy
+    return tip_y, tip_rate, x, y, vx, vy
 
 
 @inline(fastmath={"contract"})
@@ -61,18 +61,18 @@ def close(tip: Tip, links: Array, numbers: Array, w: Array) -> tuple[float, floa
     """Rotation of the links beyond the dependent joint that closes the chain, change of their rate, cosine and sine."""
     if not numbers[ROLLER] > 0.0:
         return 0.0, 0.0, 1.0, 0.0
-    rise, climb, x, y, vx, vy = tip
+    tip_y, tip_rate, x, y, vx, vy = tip
     if abs(x) < SHORT_ARM * numbers[LENGTH]:
         arm, longest = 0.0, 0.0
         for i in range(links.shape[0] - 1, -1, -1):
             arm += 2.0 * links[i, HALF] * w[i, COS]
             if abs(arm) > longest:
                 longest, numbers[PIVOT] = abs(arm), i
-    # the links after the dependent joint end at -rise from it, on their present side
-    square, along = x * x + y * y, np.copysign(np.sqrt(x * x + y * y - rise * rise), x)
-    c, s = (along * x - rise * y) / square, -(rise * x + along * y) / square
+    # the links after the dependent joint end at -tip_y from it, on their present side
+    square, along = x * x + y * y, np.copysign(np.sqrt(x * x + y * y - tip_y * tip_y), x)
+    c, s = (along * x - tip_y * y) / square, -(tip_y * x + along * y) / square
     turn = s * (1.0 + s * s / 6.0) if abs(s) < 1e-3 else np.arctan2(s, c)
-    return turn, -(climb + c * vy + s * vx) / along, c, s
+    return turn, -(tip_rate + c * vy + s * vx) / along, c, s
 
 
 @inline(fastmath={"contract"})

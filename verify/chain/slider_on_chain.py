@@ -165,10 +165,10 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             rises = self._rises(state)
             at = self._material(rises, x, lever)
             slope, flat, tilted = rises @ self.line(at, 1), self.line(at), self.line(at, 1)
-            lifted = flat + lever * slope * self.line(x, 1)
+            risen = flat + lever * slope * self.line(x, 1)
             dragged = (slope * flat - lever * tilted) / np.hypot(1.0, slope)
             before = np.clip((x - system.nodes[:-1, None]) / system.lengths[:, None], 0.0, 1.0)
-            sums = before @ along, lifted @ across + dragged @ along
+            sums = before @ along, risen @ across + dragged @ along
             steps = np.diff(sums, append=0.0, axis=1).T
             loads = [
                 LinkLoad(link=j + 1, at=float(system.lengths[j]), force=(float(fx), float(fy)))

@@ -182,7 +182,8 @@ def solve_active_sets(dt: float, largest: float, kind: Kind, bodies: Bodies, res
             if not leaves and changed <= SETTLED * largest:
                 break
     for i in range(n):
-        contact, bounded = bodies.contacts[i], bodies.sliders[bodies.points[i].slider].steepness == 0.0
+        point, contact = bodies.points[i], bodies.contacts[i]
+        bounded = laws.limits(bodies.sliders[point.slider], point, contact) < math.inf
         contact.holds = 1.0 if bounded and contact.at_limit == 0.0 else 0.0
         contact.events = 0
     return changed

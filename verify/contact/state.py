@@ -19,6 +19,8 @@ EVENTS = 12
 the others are left for roundings at rest."""
 COULOMB, TANH, ELASTIC = range(3)
 """Friction laws of a point, the numbers of the switch in `laws`."""
+LAWS = {"coulomb": COULOMB, "tanh": TANH}
+"""The law of a rigid point by `Slider.law`; a tangential spring is in series with either."""
 PRESCRIBED, BILATERAL, SPRING = range(3)
 """Normal laws of all points: N = load; N = load + mass times the acceleration of the surface; springs and dashpots."""
 SLIDES, HOLDS, LETS_GO = 0.0, 1.0, 2.0

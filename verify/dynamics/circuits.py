@@ -101,10 +101,13 @@ def rows_on(
     if not circuits:
         return modal_rows(basis, forces, damping)
     n, (inertia, lossy, stiffness, source, outputs) = len(basis.omegas), _coupled(basis, damping, circuits, omega)
-    heavy, light, m = np.flatnonzero(inertia), np.flatnonzero(inertia == 0.0), len(inertia)
-    a, at = np.zeros((m + len(heavy), m + len(heavy))), m + np.arange(len(heavy))
-    a[heavy, at], a[light, :m] = 1.0, -stiffness[light] / lossy[light, None]
-    a[m:, :m], a[at, at] = -stiffness[heavy] / inertia[heavy, None], -lossy[heavy] / inertia[heavy]
+    with_inertia, without, m = np.flatnonzero(inertia), np.flatnonzero(inertia == 0.0), len(inertia)
+    a, at = np.zeros((m + len(with_inertia), m + len(with_inertia))), m + np.arange(len(with_inertia))
+    a[with_inertia, at], a[without, :m] = 1.0, -stiffness[without] / lossy[without, None]
+    a[m:, :m], a[at, at] = (
+        -stiffness[with_inertia] / inertia[with_inertia, None],
+        -lossy[with_inertia] / inertia[with_inertia],
+    )
     values, right = np.linalg.eig(a)
     order = np.argsort(np.where(values.imag > 0.0, values.imag, np.inf), kind="stable")
     order = order[values[order].imag >= 0.0]  # one of a pair by frequency, then real rates
@@ -123,10 +126,18 @@ def rows_on(
     if acting.any() and abs(1j * omega - rates).min() < RESONANCE * omega:
         raise ResonanceError("circuits: the drive is at an undamped resonance of beam and circuits, add a resistance")
     return CircuitRows(
-        rates=rates, participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form, loads=u.T @ acting,
-        backward_loads=u.conj().T @ acting, readings=u.T @ outputs.T, vectors=u, inertia=inertia, damping=lossy,
-        stiffness=stiffness, forces=acting, modes=n,
-    )  # fmt: skip
+        rates=rates,
+        participations=np.where(rates.imag > 0.0, 2.0, 1.0) / form,
+        loads=u.T @ acting,
+        backward_loads=u.conj().T @ acting,
+        readings=u.T @ outputs.T,
+        vectors=u,
+        inertia=inertia,
+        damping=lossy,
+        stiffness=stiffness,
+        forces=acting,
+        modes=n,
+    )
 
 
 def _coupled(

@@ -7,14 +7,13 @@ import numpy as np
 from verify.contact.state import (
     BILATERAL,
     CONTACT,
-    COULOMB,
     ELASTIC,
     FOOT,
+    LAWS,
     POINT,
     PRESCRIBED,
     SLIDER,
     SPRING,
-    TANH,
     Bodies,
     Kind,
     Records,
@@ -89,8 +88,7 @@ def _bodies(
         points["face"], points["image"], points["weight"] = 1.0, 1.0, 1.0
         points["load"], points["mass"] = slider.normal_force, slider.mass
     points["offset"] += offset
-    rigid = COULOMB if slider.steepness is None else TANH
-    points["law"] = np.where(points["tangential_stiffness"] > 0.0, ELASTIC, rigid)
+    points["law"] = np.where(points["tangential_stiffness"] > 0.0, ELASTIC, LAWS[slider.law])
     return row, feet, points
 
 

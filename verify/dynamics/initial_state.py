@@ -16,6 +16,8 @@ PASSES = 40
 of its surface, so that a few iterations end in practice."""
 SETTLED = 1e-14
 """Change of the surface, over its largest displacement, at which an equilibrium is at its rounding."""
+CLOSE = 1e-9
+"""The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there."""
 
 
 def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:
@@ -24,7 +26,7 @@ def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Arra
     `surface` gives (level, slope) of the material under every point, (points,), m, under normal forces and friction;
     `compliance` (points, points), m/N, is its approximate derivative: the decrease of a depth by a unit normal force.
     Springs press but do not pull. Sets the pitches of the feet; returns the depth, (feet,), m, that a foot between two
-    beams gains by its preload. Raises InputError for a foot without load.
+    beams gains by its preload. Raises InputError for a foot without load and without an equilibrium.
     """
     p = assembly.points
     normal, place = _shares(assembly), np.zeros((len(assembly.feet), 3))
@@ -40,6 +42,8 @@ def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Arra
             assembly.feet["pitch"] = place[:, 1]
         if abs(level - before).max() <= SETTLED * abs(level).max():
             break
+    if not abs(level - before).max() <= CLOSE * abs(level).max():
+        raise InputError(f"slider.preload: beam and slider have no equilibrium within {PASSES} iterations, lower it")
     return np.asarray(place[:, 2])
 
 
@@ -102,9 +106,9 @@ def _carried(assembly: Assembly, depth: Array, compliance: Array, moves: Array) 
         left = depth - compliance @ normal - b @ place[moved]
         after = np.where(touching, normal > 0.0, left > 1e-12 * abs(depth).max())
         if (after == touching).all():
-            break
+            return normal, place.reshape(m, 3)
         touching = after
-    return normal, place.reshape(m, 3)
+    raise InputError("slider.preload: no set of points in contact carries the feet at rest, lower it")
 
 
 def static_deflection(
@@ -186,13 +190,13 @@ def set_down(assembly: Assembly, stage: Stage, z: ComplexArray, rise_of_step: Ar
     along = assembly.sliders["v"][assembly.points["slider"]]
     along = along - slope * rise if assembly.kind.following else along
     along = along * assembly.sliders["free"][assembly.points["slider"]]
-    climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
+    rise_rate = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
     foot = assembly.points["foot"]
     if assembly.restitution is not None:  # a rigid point moves with the surface from the start
-        assembly.feet["height"], assembly.feet["velocity_z"] = level, climb
+        assembly.feet["height"], assembly.feet["velocity_z"] = level, rise_rate
         return
     if not len(assembly.feet):
-        state["point_vz"] = climb
+        state["point_vz"] = rise_rate
         normal = p["load"]
     else:
         level = p["image"] * (level + rise_of_step) - p["arm"] * assembly.feet["pitch"][foot]

@@ -209,20 +209,33 @@ def stages_from_rest(
 
         stages.append(
             Stage(
-                rows=rows, forced=forced, shapes=rows.shapes(basis), field=field,
-                edges=_to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=omega, origin=origin,
-                unit_s=unit, envelope=envelope, steps=piece.steps, complex_rows=len(rows.rates) * bool(circuits),
+                rows=rows,
+                forced=forced,
+                shapes=rows.shapes(basis),
+                field=field,
+                edges=_to_the_end(basis.edges, basis.beam),
+                degree=basis.degree,
+                omega=omega,
+                origin=origin,
+                unit_s=unit,
+                envelope=envelope,
+                steps=piece.steps,
+                complex_rows=len(rows.rates) * bool(circuits),
                 readings=forced.drive_shapes(rows.readings) if circuits else NO_READINGS,
             )
-        )  # fmt: skip
+        )
         origin += unit
     return stages
 
 
 def steady_stage(
-    state: ActuatedBeam, steps: Steps, origin: float, basis: TimeBasis | None, damping: Ratio,
+    state: ActuatedBeam,
+    steps: Steps,
+    origin: float,
+    basis: TimeBasis | None,
+    damping: Ratio,
     circuits: Sequence[Mounted] = (),
-) -> Stage:  # fmt: skip
+) -> Stage:
     """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
     harmonic = state.field
     beam, degree = harmonic.beam, 3
@@ -245,9 +258,14 @@ def steady_stage(
 
     steady = [one.voltage for one in state.actuators] + [one.current / (1j * harmonic.omega) for one in state.actuators]
     stage = Stage(
-        field=field, edges=_to_the_end(edges, beam), degree=degree, omega=harmonic.omega, origin=origin, steps=steps,
+        field=field,
+        edges=_to_the_end(edges, beam),
+        degree=degree,
+        omega=harmonic.omega,
+        origin=origin,
+        steps=steps,
         readings=np.array([steady], dtype=complex),
-    )  # fmt: skip
+    )
     if basis is None:
         return stage
     rows = rows_on(basis, (), damping, circuits, harmonic.omega)
@@ -261,9 +279,14 @@ def _to_the_end(edges: Array, beam: Beam) -> Array:
 
 @lru_cache(maxsize=8)  # of all windows of a motor at a fixed position
 def steady_beam(
-    model: str, count: int | None, beam: Beam, forces: tuple[PointLoad, ...], hertz: float, damping: float | None,
+    model: str,
+    count: int | None,
+    beam: Beam,
+    forces: tuple[PointLoad, ...],
+    hertz: float,
+    damping: float | None,
     circuits: tuple[Mounted, ...] = (),
-) -> ActuatedBeam:  # fmt: skip
+) -> ActuatedBeam:
     """The steady state of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0
     if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):

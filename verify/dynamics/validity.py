@@ -66,10 +66,10 @@ def coupling_of(
     half = np.array([section_at(beam, x).surface_distance for x in starts])
     drive = [abs(stage.drive_shapes(places, derivative)[0]) for derivative in (0, 1)]
     normal, friction = np.zeros(len(places)), np.zeros(len(places))
-    for slider, lever, lifted, turned in zip(sliders, half, *receptance(places), strict=True):
+    for slider, lever, risen, turned in zip(sliders, half, *receptance(places), strict=True):
         with np.errstate(divide="ignore", invalid="ignore"):
-            loaded = np.where(drive[0] > 0.0, slider.load * abs(lifted) / drive[0], np.inf)
-        normal += slider.mass * omega**2 * abs(lifted) if slider.contact is None else loaded
+            loaded = np.where(drive[0] > 0.0, slider.load * abs(risen) / drive[0], np.inf)
+        normal += slider.mass * omega**2 * abs(risen) if slider.contact is None else loaded
         friction += slider.mu * slider.load * lever * half * omega * abs(turned)
     speeds = half * omega * drive[1]
     return Coupling(
@@ -85,10 +85,10 @@ def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptan
 
     def receptance(places: Array) -> tuple[ComplexArray, ComplexArray]:
         shapes, hertz = [basis.shapes(places, derivative) for derivative in (0, 1)], omega / (2.0 * np.pi)
-        lifted, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
+        risen, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
         if basis.tail is not None:
             turned += [basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1) for x in places.tolist()]
-        return lifted, turned
+        return risen, turned
 
     return receptance
 
