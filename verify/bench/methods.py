@@ -226,10 +226,6 @@ def engines(problem: Problem) -> Iterator[Question]:
     links = chain_of(beam, LINKS, problem.forces, hertz)
     _, limit = chain_solver(problem)
 
-    def steps(name: str) -> list[int]:
-        longest = 0.01 / hertz if ENGINES[name].implicit else min(1.0 / (12.0 * hertz), 0.99 * limit)
-        return [ceil(end / longest) * 2**k for k in range(6)]
-
     def motion(adapter: Any) -> Callable[[int], Any]:
         def run(count: int) -> Any:
             result = finished(adapter.run(links, count, end))
@@ -239,12 +235,20 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     methods, error, uncertainty = chain_methods(problem)
     methods = [dataclasses.replace(one, name=f"segments, {one.name}") for one in methods]
-    methods += [Method(name, motion(adapter), steps(name), "steps") for name, adapter in adapters.items()]
+    sizes = [step_counts(name, problem, limit) for name in adapters]
+    methods += [Method(*one, "steps") for one in zip(adapters, map(motion, adapters.values()), sizes, strict=True)]
     title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}{absent}"
     yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
     if problem.slider.law == "tanh" and problem.slider.contact is None:
         for count in SLIDER_LINKS:
             yield engines_slider(problem, adapters, count, absent)
+
+
+def step_counts(engine: str, problem: Problem, limit: float) -> list[int]:
+    """Numbers of steps of an engine: from the longest step that is stable, or has a meaning, down by halves."""
+    hertz = problem.frequency_hz
+    longest = 0.02 / hertz if ENGINES[engine].implicit else min(1.0 / (12.0 * hertz), 0.97 * limit)
+    return [ceil(problem.duration / longest) * 2**k for k in range(7)]
 
 
 def finished(run: Any) -> Any:
@@ -266,20 +270,17 @@ def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absen
     one = replace(problem.slider, coupling="one-way")
     links = chain_of(beam, count, problem.forces, hertz, load="reciprocal", soft_start_periods=SOFT_START)
     limit = step_limit(build_system(beam, count))
-    order = 4 if limit * hertz > 1.0 / 400.0 else 2
-    least = ceil(end / (0.97 * limit * (1.0 if order == 4 else sqrt(0.5))))
+    order, longest, most = (4, limit, 4) if limit * hertz > 1.0 / 400.0 else (2, limit / sqrt(2.0), 1)
 
     def own(per_period: int, samples: int = 41) -> tuple[Array, Array]:
         run = moved(problem, "segment", count, slider=one, step=1.0 / (hertz * per_period), samples=samples)
         return run.times, run.travelled
 
-    def steps(name: str) -> list[int]:
-        if ENGINES[name].implicit:
-            return [ceil(50.0 * hertz * end) * 2**k for k in range(4)]
-        return [ceil(least * sqrt(2.0) ** k) for k in range(6)] if order == 4 else [least]
+    def method(name: str) -> Method:
+        def run(steps: int) -> tuple[Array, Array]:
+            return displacement(links, finished(adapters[name].run(links, steps, end, order)), one)
 
-    def engine(adapter: Any) -> Callable[[int], tuple[Array, Array]]:
-        return lambda n: displacement(links, finished(adapter.run(links, n, end, order)), one)
+        return Method(name, run, step_counts(name, problem, longest)[: 4 if ENGINES[name].implicit else most], "steps")
 
     spline = CubicSpline(*own(2048, 2001))
 
@@ -289,7 +290,7 @@ def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absen
     methods = [
         Method("segments", own, (16, 32, 64, 128, 256), "steps / period", "segment"),
         Method("segments, modes known", own, (16, 32, 64, 128, 256), "steps / period", again=True),
-        *(Method(name, engine(adapter), steps(name), "steps") for name, adapter in adapters.items()),
+        *map(method, adapters),
     ]
     gap = departure(beam, problem.forces, hertz, end, LINKS, x=one.initial_position(beam)).rms
     title = f"displacement, one-way, rms over time, {count} links, {problem.name}{absent}"
