@@ -246,9 +246,9 @@ def engines(problem: Problem) -> Iterator[Question]:
 
 def step_counts(engine: str, problem: Problem, limit: float) -> list[int]:
     """Numbers of steps of an engine: from the longest step that is stable, or has a meaning, down by halves."""
-    hertz = problem.frequency_hz
-    longest = 0.02 / hertz if ENGINES[engine].implicit else min(1.0 / (12.0 * hertz), 0.97 * limit)
-    return [ceil(problem.duration / longest) * 2**k for k in range(7)]
+    hertz, implicit = problem.frequency_hz, ENGINES[engine].implicit
+    longest = 0.02 / hertz if implicit else min(1.0 / (12.0 * hertz), 0.97 * limit)
+    return [ceil(problem.duration / longest) * 2**k for k in range(7 if implicit else 6)]
 
 
 def finished(run: Any) -> Any:
