@@ -20,7 +20,7 @@ import numpy as np
 from msgspec.structs import replace
 from scipy.interpolate import CubicSpline
 
-from verify import load_scene, simulate
+from verify import Excitation, Keep, PrescribedSlider, Step, load_scene, simulate
 from verify.arrays import Array
 from verify.chain import motion as chain_motion
 from verify.chain.kinematics import at_rest
@@ -49,8 +49,9 @@ def run_time() -> None:
     forces = [replace(force, amplitude=1.0) for force in SCENE.forces]
 
     def linear(model: str, count: int | None, modes: int | None = None) -> Array:
-        settings: dict[str, Any] = {"model": model, "count": count, "modes": modes, "soft_start_periods": 0.0}
-        return simulate(BEAM, forces, HZ, 1e-3, at=[x], samples=len(times), **settings).deflection[:, 0]
+        settings: dict[str, Any] = {"model": model, "count": count, "modes": modes}
+        keep = Keep(at=x, samples=len(times))
+        return simulate(BEAM, Excitation(forces, HZ), 1e-3, keep=keep, **settings).deflection[:, 0]
 
     exact = linear("analytic", None, 1600)
     cases: dict[tuple[str, int], Callable[[int], Array]] = {}
@@ -77,15 +78,12 @@ def push_and_bias(model: Any, count: Any, force: float, duration: float) -> tupl
     scale = force / SCENE.forces[0].amplitude
     slider = replace(SLIDER, preload=scale * SLIDER.preload)
     places = [0.5 * BEAM.length + (k - PLACES // 2) / PLACES * wavelength for k in range(PLACES)]
-    how: dict[str, Any] = {
-        "prescribed_speed": [0.0] * PLACES,
-        "fixed_position": [True] * PLACES,
-        "steps_per_period": 61,
-    }
-    how |= {"slider": [replace(slider, position=x) for x in places], "samples": int(duration * HZ) + 2}
+    held = [PrescribedSlider(replace(slider, position=x), 0.0, fixed_position=True) for x in places]
+    how: dict[str, Any] = {"slider": held, "step": Step(per_period=61), "keep": Keep(samples=int(duration * HZ) + 2)}
     means = []
     for sign in (1.0, -1.0):
-        drive = (BEAM, [replace(f, amplitude=force, phase_deg=sign * f.phase_deg) for f in SCENE.forces], HZ, duration)
+        forces = [replace(f, amplitude=force, phase_deg=sign * f.phase_deg) for f in SCENE.forces]
+        drive = BEAM, Excitation(forces, HZ), duration
         if model in ("rigid", "stretching"):
             run = slide_on_chain(*drive, count=count, links=model, **how)
         else:

@@ -12,11 +12,12 @@ from time import process_time
 
 from msgspec.structs import replace
 
-from verify import Beam, Contact, Foot, PointForce, Slider, simulate
+from verify import Beam, Contact, Excitation, Foot, Keep, PointForce, Slider, simulate
 from verify.report.summary import environment
 
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116, amplitude=3.0), PointForce(position=0.4884, amplitude=3.0, phase_deg=90.0))
+EXCITATION = Excitation(FORCES, 4276.0)
 POINT = Slider(mass=0.05, mu=0.2, law="coulomb", preload=0.5, contact=Contact(stiffness=3e6, damping=20.0))
 SLIDERS = {"a point": POINT, "32 points": replace(POINT, foot=(Foot(length=0.0465, points=32),))}
 FIELDS = {"segment": 49, "fem": 49, "analytic": None}
@@ -25,7 +26,7 @@ FIELDS = {"segment": 49, "fem": 49, "analytic": None}
 def seconds(model: str, shape: str, law: str, coupling: str) -> float:
     """For one second."""
     slider, began = replace(SLIDERS[shape], law=law, coupling=coupling), process_time()
-    simulate(BEAM, FORCES, 4276.0, 0.1, slider=slider, model=model, count=FIELDS[model], samples=11)
+    simulate(BEAM, EXCITATION, 0.1, slider=slider, model=model, count=FIELDS[model], keep=Keep(samples=11))
     return (process_time() - began) / 0.1
 
 

@@ -9,23 +9,22 @@ friction force is computed at prescribed speeds, as on a test bench. The result 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify import load_scene, simulate
+from verify import Excitation, PrescribedSlider, load_scene, simulate
 
 scene = load_scene("preloaded-motor")
 frequency, slider = scene.drive.frequency_hz, scene.slider
+excitation = Excitation(scene.forces, frequency)
 
 # %%
 # From standstill to the crest speed, 2.83 cm/s against the wave. Each run continues the one before: 32 periods
 # settle, the next 32 are averaged.
 speeds = np.linspace(0.0, -0.0283, 17)
-forces, before = [], None
+forces, run = [], "steady"
 for speed in speeds:
+    held = PrescribedSlider(slider, speed, fixed_position=True)
     for _ in range(2):
-        before = simulate(
-            scene.beam, scene.forces, frequency, 32 / frequency, model="analytic", slider=slider, start="steady",
-            prescribed_speed=float(speed), fixed_position=True, continue_from=before,
-        )  # fmt: skip
-    forces.append(before.mean_friction)
+        run = simulate(scene.beam, excitation, 32 / frequency, model="analytic", slider=held, start=run)
+    forces.append(run.mean_friction)
 forces = np.array(forces)
 
 # %%

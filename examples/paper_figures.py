@@ -9,7 +9,7 @@ mm from the ends, 4276 Hz, modelled by 49 rigid segments. Pinned ends and materi
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify import Beam, ExactModel, HermiteModel, PointForce, SegmentModel, Slider, simulate
+from verify import Beam, ExactModel, Excitation, HermiteModel, PointForce, SegmentModel, Slider, simulate
 
 beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 forces = [PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0)]
@@ -27,7 +27,7 @@ error_22 = errors["49 segments"][21]
 # wave. The paper states neither force nor start nor kinematics; the speed depends on all three.
 strong = [PointForce(position=f.position, amplitude=30.0, phase_deg=f.phase_deg) for f in forces]
 slider = Slider(mass=1.0193679918450561e-3, mu=0.2, kinematics="following", normal="massless", coupling="one-way")
-motion = simulate(beam, strong, 4276.0, 1e-3, count=49, slider=slider)
+motion = simulate(beam, Excitation(strong, 4276.0), 1e-3, count=49, slider=slider)
 
 # %%
 # A frequency error of 0.4 % detunes the wave: the ripple of its envelope is due to reflection.

@@ -10,7 +10,7 @@ wave.
 import matplotlib.pyplot as plt
 from msgspec.structs import replace
 
-from verify import Beam, Contact, Foot, PointForce, Slider, simulate
+from verify import Beam, Contact, Excitation, Foot, Keep, PointForce, Slider, simulate
 
 beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 forces = [
@@ -18,6 +18,7 @@ forces = [
     PointForce(position=0.4884, amplitude=9.0, phase_deg=86.86),
 ]
 frequency, periods = 4276.0, 200
+excitation, keep = Excitation(forces, frequency), Keep(samples=periods + 1)
 
 # %%
 # The same mass and friction coefficient. The wave travels to the right; the material at its crests moves to the left.
@@ -35,10 +36,7 @@ readings = {"tangential": point, "following": replace(point, kinematics="followi
 fig, ax = plt.subplots(layout="constrained")
 speeds = {}
 for name, slider in readings.items():
-    motion = simulate(
-        beam, forces, frequency, periods / frequency, model="analytic", slider=slider, start="steady",
-        samples=periods + 1,
-    )  # fmt: skip
+    motion = simulate(beam, excitation, periods / frequency, model="analytic", slider=slider, start="steady", keep=keep)
     late = len(motion.times) // 2
     speeds[name] = (motion.travelled[-1] - motion.travelled[late]) / (motion.times[-1] - motion.times[late])
     ax.plot(1e3 * motion.times, 1e3 * motion.travelled, label=f"{name}: {100 * speeds[name]:+.3g} cm/s at the end")

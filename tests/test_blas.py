@@ -12,7 +12,7 @@ import pytest
 import scipy.linalg  # noqa: F401
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from verify import Beam, InputError, PointForce, Slider, free_vibration, load_scene, run_scene, simulate
+from verify import Beam, Excitation, InputError, PointForce, Slider, free_vibration, load_scene, run_scene, simulate
 from verify.analysis.solution_cache import SolutionCache
 from verify.linear.base import BeamModel
 from verify.linear.modes import Modes
@@ -55,7 +55,7 @@ def three_threads():
 
 def in_simulate(inside):
     slider = Slider(mass=0.02, mu=0.2, position=0.117)
-    simulate(STRIP, FORCE, 700.0, 3e-3, count=7, slider=slider, progress=lambda _: inside.append(threads()))
+    simulate(STRIP, Excitation(FORCE, 700.0), 3e-3, count=7, slider=slider, progress=lambda _: inside.append(threads()))
 
 
 def in_free_vibration(inside):
@@ -121,7 +121,7 @@ def test_blas_has_one_thread_inside_and_as_many_as_before_afterwards(door, tmp_p
 
 def test_invalid_input_resets_the_threads():
     with pytest.raises(InputError):
-        simulate(STRIP, FORCE, 700.0, -1.0, count=7)
+        simulate(STRIP, Excitation(FORCE, 700.0), -1.0, count=7)
     assert threads() == {3}
 
 

@@ -9,15 +9,19 @@ from verify import (
     Beam,
     Contact,
     ExactModel,
+    Excitation,
     Foot,
     HermiteModel,
     InputError,
+    Keep,
     PointForce,
     PointMass,
     PointSpring,
+    PrescribedSlider,
     Section,
     SegmentModel,
     Slider,
+    Step,
     bend,
     free_vibration,
     load_scene,
@@ -32,6 +36,7 @@ STRIP = Beam(**TITANIUM, loss_factor=0.01)
 CANTILEVER = Beam(**TITANIUM, supports=("clamped", "free"))
 FORCE = PointForce(position=0.083, amplitude=1.7, phase_deg=23.0)
 HERTZ = 411.0
+DRIVE, BODY = Excitation(FORCE, HERTZ), Slider(mass=0.0031, mu=0.17)
 
 
 def beam(**given):
@@ -146,14 +151,21 @@ VERBS = [
     (lambda: HermiteModel(STRIP, 2.5), r"n_elements = 2\.5: give a whole number of at least 1"),
     (lambda: ExactModel(STRIP).modes(True), r"n_modes = True: give a whole number of at least 1"),
     (lambda: ExactModel(STRIP).harmonic(FORCE, []), r"frequenc"),
-    (lambda: simulate(STRIP, FORCE, HERTZ, 0.0, count=9), r"duration = 0\.0"),
-    (
-        lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, model="segmnt"),
-        r"model = 'segmnt'.* did you mean 'segment'",
-    ),
-    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, samples=1), r"samples = 1"),
-    (lambda: simulate(STRIP, FORCE, HERTZ, 1e-3, count=9, slider=3.0), r"slider has 3\.0: give a Slider"),
-    (lambda: simulate(STRIP, [], HERTZ, 1e-3, count=9, slider=[]), r"forces is empty"),
+    (lambda: simulate(STRIP, DRIVE, 0.0, count=9), r"duration = 0\.0"),
+    (lambda: simulate(STRIP, DRIVE, 1e-3, count=9, model="segmnt"), r"model = 'segmnt'.* did you mean 'segment'"),
+    (lambda: simulate(STRIP, FORCE, 1e-3, count=9), r"excitation = PointForce.*: give an Excitation"),
+    (lambda: simulate(STRIP, DRIVE, 1e-3, count=9, slider=3.0), r"slider has 3\.0: give a Slider"),
+    (lambda: simulate(STRIP, Excitation([], HERTZ), 1e-3, count=9, slider=[]), r"forces is empty"),
+    (lambda: simulate(STRIP, DRIVE, 1e-3, count=9, slider=BODY, step=Step(per_period=3)), r"step\.per_period = 3"),
+    (lambda: Excitation(FORCE, 0.0), r"frequency_hz = 0\.0"),
+    (lambda: Excitation(STRIP, HERTZ), r"forces has Beam.*: give a PointForce"),
+    (lambda: Excitation(FORCE, HERTZ, 2.0, [(1e-3, [0.0, 1.0])]), r"soft_start_periods = 2\.0 and envelope"),
+    (lambda: PrescribedSlider(BODY, nan), r"prescribed_slider\.speed = nan"),
+    (lambda: PrescribedSlider(BODY, [0.1, 0.2]), r"prescribed_slider\.speed = \(0\.1, 0\.2\): give one number"),
+    (lambda: Step(per_period=0), r"step\.per_period = 0"),
+    (lambda: Step(seconds=1e-6, per_period=64), r"step\.seconds = 1e-06 and step\.per_period = 64"),
+    (lambda: Keep(samples=1), r"keep\.samples = 1"),
+    (lambda: Keep(at=["tip"]), r"keep\.at = \['tip'\]"),
     (lambda: free_vibration(STRIP, 2, 0.0, model="fem", count=9), r"duration = 0\.0"),
     (lambda: free_vibration(STRIP, 0, 1e-3, model="fem", count=9), r"shape = 0"),
     (lambda: bend(CANTILEVER, 9, nan), r"load\.force y = nan"),

@@ -6,7 +6,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import Beam, Contact, Foot, PointForce, PointMass, SegmentModel, Slider, simulate
+from verify import Beam, Contact, Excitation, Foot, Keep, PointForce, PointMass, SegmentModel, Slider, simulate
 from verify.options import ATTACHMENTS, JOINTS, LOADS, SUPPORTS, WALLS
 
 LENGTH = 0.83
@@ -74,9 +74,10 @@ def test_a_slider_is_carried_the_other_way(model, more):
     beam, pushes = plain(thickness=0.0019), [replace(force, amplitude=9.0 * force.amplitude) for force in FORCES]
     ridden = Slider(mass=0.021, mu=0.3, preload=0.4, position=0.377, speed=0.004, **more)
     back = replace(ridden, position=LENGTH - 0.377, speed=-0.004)
-    one = simulate(beam, pushes, 433.0, 0.02, slider=ridden, model=model, at=X, **size)
-    other = simulate(
-        beam.mirrored(), other_side(pushes), 433.0, 0.02, slider=back, model=model, at=LENGTH - X[::-1], **size
+    sides = (beam, pushes, ridden, X), (beam.mirrored(), other_side(pushes), back, LENGTH - X[::-1])
+    one, other = (
+        simulate(beam, Excitation(forces, 433.0), 0.02, slider=slider, model=model, keep=Keep(at=x), **size)
+        for beam, forces, slider, x in sides
     )
     compared(one.deflection, other.deflection)
     for name in ("travelled", "speed", "friction"):
@@ -100,7 +101,7 @@ def test_feet_are_pressed_as_much_and_carried_the_other_way(given):
         law = {"external_force": pull}
         law |= {"law": "coulomb"} if "tangential_stiffness" in given else {"slope": 70.0}
         slider = Slider(mass=0.021, mu=0.3, preload=0.4, position=place, contact=Contact(**given), foot=foot, **law)
-        runs.append(simulate(beam, forces, 433.0, 0.01, slider=slider, count=24))
+        runs.append(simulate(beam, Excitation(forces, 433.0), 0.01, slider=slider, count=24))
     one, other = runs
     assert abs(one.travelled + other.travelled).max() <= 1e-6 * abs(one.travelled).max()
     assert other.height == pytest.approx(one.height, abs=1e-6 * abs(one.height).max())

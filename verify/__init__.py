@@ -11,6 +11,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Stack, Bar33, Bar31, Langevin, EndMass, Patch                piezoelectric actuators; PiezoMaterial: their ceramic
   on_beam, Mounted, Load                                       actuators on a driven beam, with electrical loads
   simulate, Motion                                             a driven beam in time, with sliders or alone
+  Excitation, PrescribedSlider, Step, Keep                     arguments of `simulate`
   Contact, Foot                                                unilateral contact of sliders, feet of several points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
     from verify.analytic_modes import ExactModel
     from verify.chain.statics import Bent, bend
+    from verify.dynamics.arguments import Excitation, Keep, PrescribedSlider, Step
     from verify.dynamics.free_vibration import FreeVibration, free_vibration
     from verify.dynamics.result import Motion
     from verify.dynamics.simulate import simulate
@@ -53,11 +55,11 @@ if TYPE_CHECKING:
     from verify.travelling_wave import WaveMeasures
 
 __all__ = [
-    "Bar31", "Bar33", "Beam", "Bent", "Contact", "Device", "EndMass", "ExactModel", "Foot", "FreeVibration",
-    "HarmonicField", "HermiteModel", "InputError", "Langevin", "Load", "Modes", "Motion", "Mounted", "Patch",
-    "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring", "Section", "SegmentModel", "Slider",
-    "Stack", "WaveMeasures", "__version__", "bend", "free_vibration", "load_scene", "on_beam", "run_scene", "simulate",
-    "travelling_wave",
+    "Bar31", "Bar33", "Beam", "Bent", "Contact", "Device", "EndMass", "ExactModel", "Excitation", "Foot",
+    "FreeVibration", "HarmonicField", "HermiteModel", "InputError", "Keep", "Langevin", "Load", "Modes", "Motion",
+    "Mounted", "Patch", "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring",
+    "PrescribedSlider", "Section", "SegmentModel", "Slider", "Stack", "Step", "WaveMeasures", "__version__", "bend",
+    "free_vibration", "load_scene", "on_beam", "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
@@ -68,6 +70,8 @@ _HOME = {
     "Foot": "problem.slider", "Slider": "problem.slider", "ExactModel": "analytic_modes", "HermiteModel": "fem_beam",
     "SegmentModel": "segment_model", "HarmonicField": "linear.field", "Modes": "linear.modes",
     "WaveMeasures": "travelling_wave", "simulate": "dynamics.simulate", "Motion": "dynamics.result",
+    "Excitation": "dynamics.arguments", "PrescribedSlider": "dynamics.arguments", "Step": "dynamics.arguments",
+    "Keep": "dynamics.arguments",
     "free_vibration": "dynamics.free_vibration", "FreeVibration": "dynamics.free_vibration",
     "bend": "chain.statics", "Bent": "chain.statics", "PiezoMaterial": "actuators.materials",
     "Stack": "actuators.transducers", "Bar33": "actuators.transducers", "Bar31": "actuators.transducers",

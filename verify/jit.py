@@ -17,14 +17,7 @@ from numba import config, njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_ENGINE = (
-    *("layout", "kinematics", "friction", "point_forces", "one_way_friction", "active_sets", "contact_solver"),
-    *("integrator", "impact"),
-)
-_NAMES = (
-    *("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py"),
-    *(f"dynamics/{name}.py" for name in _ENGINE),
-)
+_NAMES = ("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py", "contact/*.py", "dynamics/*.py")
 _SOURCES = sorted({Path(__file__), *(source for name in _NAMES for source in _PACKAGE.glob(name))})
 _DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
 _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
@@ -40,6 +33,13 @@ def inline(function: Any = None, **options: Any) -> Any:
     options = {"error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, **options}
     compiled = partial(njit, **options)
     return compiled if function is None else compiled(function)
+
+
+def once(function: Function) -> Function:
+    """Compile a function into the single place that calls it."""
+    options: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "inline": "always"}
+    compiled: Function = njit(**options)(function)
+    return compiled
 
 
 @overload  # `@jit`: the decorated function keeps its type

@@ -118,11 +118,12 @@ def check_sizes(field: str, sizes: Sequence[float]) -> None:
         raise InputError(f"{field} = {list(sizes)}: an observed order needs three or more different sizes")
 
 
-def as_tuple(field: str, value: Any, item: type[Item]) -> tuple[Item, ...]:
-    """One or several items of a type as a tuple. Raises InputError for any other type."""
-    single = isinstance(value, item) or not hasattr(value, "__iter__") or getattr(value, "shape", None) == ()
+def as_tuple(field: str, value: Any, *types: type[Item]) -> tuple[Item, ...]:
+    """One or several items of one of these types as a tuple. Raises InputError for any other type."""
+    single = isinstance(value, types) or not hasattr(value, "__iter__") or getattr(value, "shape", None) == ()
     items = (value,) if single else tuple(value)
     for entry in items:
-        if not isinstance(entry, item):
-            raise InputError(f"{field} has {shown(entry)}: give a {item.__name__}, or a list of them")
+        if not isinstance(entry, types):
+            names = " or a ".join(one.__name__ for one in types)
+            raise InputError(f"{field} has {shown(entry)}: give a {names}, or a list of them")
     return items

@@ -6,7 +6,18 @@ from msgspec.structs import replace
 from scipy.integrate import solve_ivp
 
 from tests.beams import close
-from verify import Beam, HermiteModel, PointForce, PointMass, PointSpring, Slider, free_vibration, simulate
+from verify import (
+    Beam,
+    Excitation,
+    HermiteModel,
+    Keep,
+    PointForce,
+    PointMass,
+    PointSpring,
+    Slider,
+    free_vibration,
+    simulate,
+)
 from verify.actuators.on_beam import Mounted, QuasiStatic, beam_in_time, on_beam
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
@@ -46,7 +57,8 @@ def test_free_decay_is_that_of_the_coupled_equations(kind):
     (load, _, beside, law), model, ratio = CIRCUITS[kind], kind if kind == "fem" else "segment", 0.0013
     settings = {"model": model, "count": 4, "modal_damping": ratio}
     before = free_vibration(BEAM, lambda x: 1e-3 * x * (0.2 - x) ** 2, 1e-9, samples=2, **settings)
-    run = simulate(BEAM, (), HERTZ, 0.004, circuits=shunt(load), at=X, samples=9, continue_from=before, **settings)
+    shunted = Excitation((), HERTZ, circuits=shunt(load))
+    run = simulate(BEAM, shunted, 0.004, start=before, keep=Keep(at=X, samples=9), **settings)
     basis = basis_of(BEAM, model, 4, None)
     b, n, w = 0.05 * basis.loads(0.07), len(basis.omegas), basis.omegas
 
@@ -73,9 +85,13 @@ def test_a_driven_circuit_settles_in_the_steady_state_of_its_port(kind):
         there = beam_in_time(BARE, "force", (), patch, HERTZ, [(0.07, Load(resistance=2.1e4, inductance=31.0))])
         beam, (one,) = there.beam, there.circuits
     exact = on_beam(HermiteModel(beam, 5), one, HERTZ, forces=FORCES, modal_damping=0.04)
-    (port,), settings = exact.actuators, {"model": "fem", "count": 5, "modal_damping": 0.04, "at": X, "samples": 2}
-    for start in ({"soft_start_periods": 5.0}, {"start": "steady"}):
-        run = simulate(beam, FORCES, HERTZ, 1.5, circuits=one, **settings, **start)
+    (port,), settings = (
+        exact.actuators,
+        {"model": "fem", "count": 5, "modal_damping": 0.04, "keep": Keep(at=X, samples=2)},
+    )
+    for start, periods in (("rest", 5.0), ("steady", 0.0)):
+        excitation = Excitation(FORCES, HERTZ, soft_start_periods=periods, circuits=one)
+        run = simulate(beam, excitation, 1.5, start=start, **settings)
         close(run.deflection[-1], (exact.field.deflection(X) * turn).real, 1e-9)
         close(run.voltages[-1], (port.voltage * turn).real, 1e-9)
         close(run.charges[-1], (port.current / (2j * np.pi * HERTZ) * turn).real, 1e-9)
@@ -83,9 +99,9 @@ def test_a_driven_circuit_settles_in_the_steady_state_of_its_port(kind):
 
 def test_resistors_go_to_short_and_to_open_electrodes():
     def off(resistance, like):
-        settings = {"model": "segment", "count": 7, "at": X, "samples": 7}
-        one = simulate(BEAM, FORCES, HERTZ, 0.01, circuits=shunt(Load(resistance=resistance)), **settings)
-        return abs(one.deflection - simulate(like, FORCES, HERTZ, 0.01, **settings).deflection).max()
+        settings = {"model": "segment", "count": 7, "keep": Keep(at=X, samples=7)}
+        one = simulate(BEAM, Excitation(FORCES, HERTZ, circuits=shunt(Load(resistance=resistance))), 0.01, **settings)
+        return abs(one.deflection - simulate(like, Excitation(FORCES, HERTZ), 0.01, **settings).deflection).max()
 
     opened = replace(BEAM, spring=(replace(SPRING, stiffness=900.0 + 0.05**2 / 4e-8),))
     for far, near, like in ((2e-2, 1e-2, BEAM), (5e9, 1e10, opened)):
@@ -95,11 +111,13 @@ def test_resistors_go_to_short_and_to_open_electrodes():
 
 @pytest.mark.parametrize("load", [Load(resistance=4100.0), COIL])
 def test_energy_of_a_slider_on_a_shunted_beam_balances(load):
-    settings = {"model": "segment", "count": 12, "modal_damping": 0.013, "samples": 4001, "step": 2e-6}
+    settings = {"model": "segment", "count": 12, "modal_damping": 0.013, "keep": Keep(samples=4001), "step": 2e-6}
     settings |= {"slider": Slider(mass=0.02, mu=0.3, position=0.12)}
     strong = tuple(replace(force, amplitude=60.0 * force.amplitude) for force in FORCES)
-    bare, weak, run = (simulate(BEAM, strong, 911.0, 0.02, circuits=one, **settings)
-                       for one in ((), shunt(load, force_factor=1e-9), shunt(load)))  # fmt: skip
+    bare, weak, run = (
+        simulate(BEAM, Excitation(strong, 911.0, circuits=one), 0.02, **settings)
+        for one in ((), shunt(load, force_factor=1e-9), shunt(load))
+    )
     close(weak.travelled, bare.travelled, 1e-9)
     assert abs(run.displacement / bare.displacement - 1.0) > 0.1
     energy, volt, charge = run.energy, run.voltages[:, 0], run.charges[:, 0]
@@ -118,7 +136,8 @@ def test_a_scene_runs_its_shunts_in_time():
     moved = [evaluate("slider.displacement", {"count": 6}, one, SolutionCache(one.beam)) for one in scenes]
     assert 1e-3 < abs(moved[0] / moved[1] - 1.0) < 10.0
     there, one = scene.in_time(scene.forces, HERTZ), Mounted(actuator=STACK, position=0.11, load=scene.shunts[0][1])
-    run = simulate(there.beam, there.loads, HERTZ, 1e-3, model="fem", count=20, circuits=there.circuits, start="steady")
+    excitation = Excitation(there.loads, HERTZ, circuits=there.circuits)
+    run = simulate(there.beam, excitation, 1e-3, model="fem", count=20, start="steady")
     exact = on_beam(HermiteModel(scene.beam, 20), one, HERTZ, forces=scene.forces)
     assert run.voltages[0, 0] == pytest.approx(exact.actuators[0].voltage.real, rel=1e-5)
     with pytest.raises(InputError, match=r"does not model drive\.shunt"):
@@ -134,6 +153,6 @@ def test_a_scene_runs_its_shunts_in_time():
 ])  # fmt: skip
 def test_what_has_no_equivalent_is_refused(one, message):
     with pytest.raises(InputError, match=message):
-        simulate(BEAM, FORCES, HERTZ, 1e-3, model="fem", count=5, circuits=one)
+        simulate(BEAM, Excitation(FORCES, HERTZ, circuits=one), 1e-3, model="fem", count=5)
     with pytest.raises(InputError, match="circuits act on truncated modes too"):
-        simulate(BARE, FORCES, HERTZ, 1e-3, model="analytic", circuits=shunt(COIL))
+        simulate(BARE, Excitation(FORCES, HERTZ, circuits=shunt(COIL)), 1e-3, model="analytic")

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from tests.beams import BEAMS, HELD, MODELS, close, over
 from tests.reference.dense import Elements
 from tests.reference.piezo_bar import Layer, respond
-from verify import Device, ExactModel, HermiteModel, PointForce, PointMoment, SegmentModel, simulate
+from verify import Device, ExactModel, Excitation, HermiteModel, Keep, PointForce, PointMoment, SegmentModel, simulate
 from verify.actuators.on_beam import Mounted, beam_in_time, on_beam
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
@@ -175,8 +175,8 @@ def test_a_drive_in_time_has_the_steady_state_of_its_ports(kind, actuator, off):
     assert there.error < off
     assert bool(there.error) == (actuator is not PATCH)
     assert bool(there.beam.spring) == (actuator is CLEAN)
-    run = simulate(there.beam, there.loads, HERTZ, 800 / HERTZ, model="fem", count=20, soft_start_periods=9,
-                   modal_damping=0.2, at=X)  # fmt: skip
+    excitation = Excitation(there.loads, HERTZ, soft_start_periods=9)
+    run = simulate(there.beam, excitation, 800 / HERTZ, model="fem", count=20, modal_damping=0.2, keep=Keep(at=X))
     lossless = HermiteModel(replace(there.beam, loss_factor=0.0), 20)
     steady = lossless.harmonic(there.loads, HERTZ, modal_damping=0.2).deflection(X)
     close(run.deflection[-1], (steady * np.exp(1j * OMEGA * run.times[-1])).real)

@@ -15,6 +15,7 @@ from verify.chain.benchmarks import (
     transient,
 )
 from verify.chain.system import build_system
+from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
@@ -47,7 +48,7 @@ def test_work_energy_and_damping_balance_under_all_loads(tip):
 @pytest.mark.parametrize(("n", "x"), [(50, 0.0613), (13, 0.2917)])
 def test_deflection_at_small_forces_is_that_of_the_linear_segment_model(supports, n, x):
     beam = structs.replace(PLATE, supports=supports)
-    linear = simulate(beam, forces(1.0), HERTZ, 9e-4, model="segment", count=n, start="rest", at=x, samples=2)
+    linear = simulate(beam, Excitation(forces(1.0), HERTZ), 9e-4, count=n, start="rest", keep=Keep(at=x, samples=2))
 
     def gap(amplitude, **options):
         force = tuple(SceneForce(**structs.asdict(one)) for one in forces(amplitude))

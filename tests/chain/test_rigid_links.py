@@ -57,7 +57,7 @@ def test_accelerations_equal_the_multiplier_equations(seed, n, tip, axial):
     model = flatten(system)
     y = begin(system, state, model[2])
     out = np.zeros_like(y)
-    accelerate(state.time, y, out, *model)
+    accelerate(state.time, y, out, model)
     found = np.diff(out[n : 2 * n], prepend=0.0)
     assert abs(found - expected).max() <= 1e-9 * max(abs(expected).max(), 1e-3)
 

@@ -5,7 +5,7 @@ import pytest
 from msgspec.structs import replace
 from reference.multibody import ridden, rigid_motion, stretching_motion
 
-from verify import Contact, Foot, bend, simulate
+from verify import Contact, Excitation, Foot, Keep, PrescribedSlider, bend, simulate
 from verify.chain.motion import simulate_elastic
 from verify.chain.slider_on_chain import slide_on_chain
 from verify.chain.system import build_system
@@ -24,6 +24,10 @@ def forces(amplitude):
         PointForce(position=0.0116, amplitude=amplitude, phase_deg=-90.0),
         PointForce(position=0.4871, amplitude=1.3 * amplitude),
     )
+
+
+def drive(amplitude, hertz=HERTZ):
+    return Excitation(forces(amplitude), hertz)
 
 
 def test_stretching_links_move_as_dense_equations():
@@ -45,7 +49,7 @@ def slider(**more):
 @pytest.mark.parametrize("links", ["rigid", "stretching"])
 def test_a_slider_moves_as_dense_equations_state(links, kinematics):
     n, duration, one = 7, 2.4e-4, slider(kinematics=kinematics, speed=0.011)
-    found = slide_on_chain(STRIP, forces(20.0), HERTZ, duration, slider=one, count=n, step=1e-6, links=links)
+    found = slide_on_chain(STRIP, drive(20.0), duration, slider=one, count=n, step=1e-6, links=links)
     system = build_system(STRIP, n, forces(20.0), HERTZ, load="reciprocal", links=links)
     axial = system.axial_stiffness
     seen = rigid_motion(system, duration) if system.rigid else stretching_motion(system, axial, duration)
@@ -79,9 +83,9 @@ def scaled(kind, size):
 def test_a_slider_departs_from_that_on_the_linear_chain_in_proportion_to_the_motion(kind):
     apart = []
     for size in (0.02, 0.005):
-        asked = {"slider": scaled(kind, size), "count": 25, "step": STEP, "samples": 41}
-        bent = slide_on_chain(STRIP, forces(size), HERTZ, 4e-4, **asked)
-        straight = simulate(STRIP, forces(size), HERTZ, 4e-4, start="rest", **asked)
+        asked = {"slider": scaled(kind, size), "count": 25, "step": STEP, "keep": Keep(samples=41)}
+        bent = slide_on_chain(STRIP, drive(size), 4e-4, **asked)
+        straight = simulate(STRIP, drive(size), 4e-4, start="rest", **asked)
         largest = abs(straight.surface_speed[1:]).max()
         apart.append(abs(bent.surface_speed - straight.surface_speed)[1:].max() / largest)
         assert bent.statistics.unconverged == 0
@@ -93,10 +97,8 @@ def test_a_slider_departs_from_that_on_the_linear_chain_in_proportion_to_the_mot
 def test_contact_takes_from_a_damped_chain_what_it_gives_and_dissipates(kind):
     parts = []
     for step in (1e-6, 5e-7):
-        found = slide_on_chain(
-            STRIP, forces(1.0), HERTZ, 4e-4, slider=scaled(kind, 1.0), count=25, step=step, samples=11,
-            joint_dashpot=1e-4,
-        ).energy  # fmt: skip
+        given = {"count": 25, "step": step, "joint_dashpot": 1e-4, "keep": Keep(samples=11)}
+        found = slide_on_chain(STRIP, drive(1.0), 4e-4, slider=scaled(kind, 1.0), **given).energy
         assert found.damping_loss > 0.3 * found.drive_work > 0.0
         parts.append(abs(found.residual) / found.friction_loss)
     assert parts[1] < 2e-2
@@ -106,9 +108,9 @@ def test_contact_takes_from_a_damped_chain_what_it_gives_and_dissipates(kind):
 def test_a_slider_crosses_links_as_on_the_linear_chain():
     own = {"mass": 1.0, "position": 0.2355, "speed": 20.0, "slope": 500.0, "gravity": 0.3924}
     one = slider(**{**KINDS["tanh two-way"], **own})
-    asked = {"slider": one, "count": 25, "step": STEP, "samples": 401}
-    found = slide_on_chain(STRIP, forces(0.04), HERTZ, 1.6e-3, **asked)
-    linear = simulate(STRIP, forces(0.04), HERTZ, 1.6e-3, **asked)
+    asked = {"slider": one, "count": 25, "step": STEP, "keep": Keep(samples=401)}
+    found = slide_on_chain(STRIP, drive(0.04), 1.6e-3, **asked)
+    linear = simulate(STRIP, drive(0.04), 1.6e-3, **asked)
     assert found.displacement > STRIP.length / 25  # more than a link
     assert found.surface_speed == pytest.approx(linear.surface_speed, abs=0.01 * abs(linear.surface_speed).max())
 
@@ -117,7 +119,7 @@ def test_a_foot_at_rest_bends_the_chain_as_its_load_and_stays():
     arm = replace(STRIP, supports=("clamped", "free"))
     load, position = 0.3 * arm.bending_stiffness / arm.length**2, arm.length * 19 / 20
     own = {"mass": 0.021, "preload": load, "position": position, "coupling": "two-way", **PRESSED}
-    found = slide_on_chain(arm, (), HERTZ, 1e-3, slider=slider(**own), count=20, at=position)
+    found = slide_on_chain(arm, Excitation((), HERTZ), 1e-3, slider=slider(**own), count=20, keep=Keep(at=position))
     short = replace(arm, length=position)
     assert found.deflection[0, 0] == pytest.approx(-bend(short, 190, load).deflection, rel=2e-3)
     assert found.normal_force == pytest.approx(load, rel=1e-4)
@@ -129,25 +131,23 @@ def test_a_foot_at_rest_bends_the_chain_as_its_load_and_stays():
 def test_the_surface_of_a_chain_is_continuous_at_a_joint(links):
     joint, own = 3 * STRIP.length / 9, KINDS["feet"] | {"foot": (), "preload": 9.0}
     left, right = (
-        slide_on_chain(
-            STRIP, forces(30.0), HERTZ, 5e-4, slider=slider(**own, position=place), count=9, samples=9, links=links,
-            prescribed_speed=0.0, fixed_position=True,
-        ).surface_speed[1:]
-        for place in (joint - 1e-9, joint + 1e-9)
-    )  # fmt: skip
+        slide_on_chain(STRIP, drive(30.0), 5e-4, slider=held, count=9, links=links, keep=Keep(samples=9))
+        for held in (PrescribedSlider(slider(**own, position=x), 0.0, True) for x in (joint - 1e-9, joint + 1e-9))
+    )
+    left, right = left.surface_speed[1:], right.surface_speed[1:]
     assert left == pytest.approx(right, abs=1e-6 * np.nanmax(abs(left)))
 
 
 def test_sliders_on_one_chain_move_as_each_by_itself_one_way():
     pair, asked = [slider(position=0.231), slider(position=0.317, mu=0.31)], {"count": 9, "step": STEP}
-    both = slide_on_chain(STRIP, forces(3.0), HERTZ, 3e-4, slider=pair, **asked)
+    both = slide_on_chain(STRIP, drive(3.0), 3e-4, slider=pair, **asked)
     for i, one in enumerate(pair):
-        alone = slide_on_chain(STRIP, forces(3.0), HERTZ, 3e-4, slider=one, **asked)
+        alone = slide_on_chain(STRIP, drive(3.0), 3e-4, slider=one, **asked)
         assert both.travelled[:, i] == pytest.approx(alone.travelled, rel=1e-9, abs=1e-18)
 
 
 def test_a_slider_that_leaves_the_chain_ends_the_run():
-    found = slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(speed=2000.0), count=10, step=STEP)
+    found = slide_on_chain(STRIP, drive(2.0), 2e-4, slider=slider(speed=2000.0), count=10, step=STEP)
     assert found.statistics.stopped.startswith("left")
     assert 0.0 < found.end.time < 2e-4
 
@@ -156,7 +156,7 @@ def test_a_slider_that_leaves_the_chain_ends_the_run():
 def test_a_chain_whose_motion_is_not_resolved_is_refused(links):
     with pytest.raises(InputError, match=r"tolerance|step"):
         slide_on_chain(
-            STRIP, forces(1e5), 900.0, 3e-3, slider=slider(**KINDS["feet"], preload=0.3), links=links, count=9
+            STRIP, drive(1e5, 900.0), 3e-3, slider=slider(**KINDS["feet"], preload=0.3), links=links, count=9
         )
 
 
@@ -173,4 +173,10 @@ def test_a_chain_whose_motion_is_not_resolved_is_refused(links):
 def test_sliders_that_a_chain_does_not_support_are_refused(change, field):
     links = change.pop("links", "stretching")
     with pytest.raises(InputError, match=field):
-        slide_on_chain(STRIP, forces(2.0), HERTZ, 2e-4, slider=slider(**change), count=10, links=links)
+        slide_on_chain(STRIP, drive(2.0), 2e-4, slider=slider(**change), count=10, links=links)
+
+
+@pytest.mark.parametrize("growth", [{"soft_start_periods": 2.0}, {"envelope": [(1e-4, [0.0, 1.0])]}])
+def test_forces_that_grow_are_refused_on_a_chain(growth):
+    with pytest.raises(InputError, match=next(iter(growth))):
+        slide_on_chain(STRIP, Excitation(forces(2.0), HERTZ, **growth), 2e-4, slider=SLIDER, count=10)

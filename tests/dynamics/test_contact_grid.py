@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from reference import contact_cells as grid
 
-from verify import simulate
+from verify import Excitation, Keep, PrescribedSlider, simulate
 from verify.chain.slider_on_chain import slide_on_chain
 from verify.errors import InputError
 
@@ -40,19 +40,17 @@ CELLS = [
 def run(cell, steps):
     speed, stays = grid.prescribed(cell)
     bodies = grid.sliders(cell)
+    sliders = [PrescribedSlider(body, speed, stays) for body in bodies]
     given = {
-        "slider": bodies[0] if len(bodies) == 1 else bodies,
+        "slider": sliders[0] if len(sliders) == 1 else sliders,
         "step": 1.0 / (grid.HERTZ * steps),
-        "samples": 2,
-        "prescribed_speed": speed,
-        "fixed_position": stays,
-        "at": [0.123],
+        "keep": Keep(at=0.123, samples=2),
     }
-    drive = grid.STRIP, grid.forces(cell), grid.HERTZ, grid.DURATION
     if cell.surface == "chain":
-        return slide_on_chain(*drive, count=grid.PARTS["chain"], **given)
-    more = {"start": "rest", "soft_start_periods": 2.0, "modal_damping": grid.DAMPING}
-    return simulate(*drive, model="fem", count=grid.PARTS["beam"], **more, **given)
+        drive = Excitation(grid.forces(cell), grid.HERTZ)
+        return slide_on_chain(grid.STRIP, drive, grid.DURATION, count=grid.PARTS["chain"], **given)
+    drive, more = Excitation(grid.forces(cell), grid.HERTZ, 2.0), {"start": "rest", "modal_damping": grid.DAMPING}
+    return simulate(grid.STRIP, drive, grid.DURATION, model="fem", count=grid.PARTS["beam"], **more, **given)
 
 
 def figures(motion):

@@ -7,8 +7,8 @@ from reference.dense import Elements
 from reference.slider import driven, hermite_modes, smooth
 from scipy.integrate import solve_ivp
 
-from verify import Beam, Contact, Foot, PointForce, Slider, simulate
-from verify.dynamics.layout import LANDS
+from verify import Beam, Contact, Excitation, Foot, Keep, PointForce, PrescribedSlider, Slider, simulate
+from verify.contact.state import LANDS
 from verify.problem.cross_section import Section
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -25,8 +25,8 @@ def test_friction_of_a_clamped_mass_creates_no_energy_in_steps_of_an_eighth_of_a
     """100 g under 20.98 N and mu = 3 on 400 segments; friction once put 3.6 times the work of the drive into them."""
     forces = (FORCES[0], replace(FORCES[1], position=0.4884, amplitude=1.0, phase_deg=90.0))
     slider = Slider(mass=0.1, mu=3.0, preload=20.0, normal="massless", kinematics=kinematics, **law)
-    given = {"count": 400, "soft_start_periods": 2.0, "slider": slider, "step": 1 / (8 * HERTZ), "samples": 9}
-    motion = simulate(STRIP, forces, HERTZ, 3e-3, **given)
+    given = {"count": 400, "slider": slider, "step": 1 / (8 * HERTZ), "keep": Keep(samples=9)}
+    motion = simulate(STRIP, Excitation(forces, HERTZ, soft_start_periods=2.0), 3e-3, **given)
     energy = motion.energy
     assert energy.created < 5e-4 * energy.drive_work
     assert (np.cumsum(motion.friction_loss) >= 0.0).all()
@@ -42,8 +42,8 @@ def test_the_coupling_size_on_a_stepped_damped_beam_is_that_of_dense_elements(da
     sections = (Section(length=0.14, thickness=0.001), Section(length=0.15, thickness=0.002),
                 Section(length=0.21, thickness=0.001))  # fmt: skip
     beam, slider = replace(STRIP, section=sections), Slider(mass=2e-3, mu=0.3, position=position, coupling="one-way")
-    found = simulate(beam, FORCES, HERTZ, 1e-4, model="fem", count=100, start="steady", slider=slider, samples=2,
-                     **damping).coupling  # fmt: skip
+    given = {"model": "fem", "count": 100, "start": "steady", "keep": Keep(samples=2), **damping}
+    found = simulate(beam, Excitation(FORCES, HERTZ), 1e-4, slider=slider, **given).coupling
     dense = Elements(beam, np.linspace(0.0, 0.5, 401))
     node, half = int(np.argmin(abs(dense.nodes - position))), 0.001 if position == 0.21 else 0.0005
     loads = dense.row(position, 0), dense.row(position, 1), dense.load(FORCES)
@@ -82,9 +82,9 @@ def test_a_mass_that_sticks_has_the_forces_of_one_fixed_to_the_beam(law, kinemat
 
     for amplitude in (0.2, 0.0):
         normal, friction = forces(amplitude)
-        given = {"slider": slider, "model": "fem", "count": 8, "modal_damping": damping, "samples": 401}
+        given = {"slider": slider, "model": "fem", "count": 8, "modal_damping": damping, "keep": Keep(samples=401)}
         force = PointForce(position=0.3, amplitude=amplitude)
-        motion = simulate(STEEL, force, 37.0, 0.2, soft_start_periods=1.0, **given)
+        motion = simulate(STEEL, Excitation(force, 37.0, soft_start_periods=1.0), 0.2, **given)
         assert motion.normal_force == pytest.approx(normal, abs=2e-3)
         assert motion.largest_friction == pytest.approx(abs(friction).max(), rel=0.025 if amplitude else 0.06, abs=1e-5)
         assert motion.energy.friction_loss >= -1e-15
@@ -95,11 +95,14 @@ def test_a_mass_that_sticks_has_the_forces_of_one_fixed_to_the_beam(law, kinemat
 def test_a_prescribed_speed_and_a_fixed_position_stay_as_they_are(normal, kinematics):
     """A fixed position has one reaction at any speed, but for friction, of which there is none here."""
     slider = Slider(mass=4e-3, mu=1e-9, preload=0.8, position=0.19, normal=normal, kinematics=kinematics)
-    asked = {"model": "fem", "count": 20, "soft_start_periods": 1.0, "slider": slider, "samples": 7, "step": 2e-6}
-    moving = simulate(STRIP, FORCES, HERTZ, 1e-3, prescribed_speed=0.013, **asked)
+    asked = {"model": "fem", "count": 20, "keep": Keep(samples=7), "step": 2e-6}
+    drive = Excitation(FORCES, HERTZ, soft_start_periods=1.0)
+    moving = simulate(STRIP, drive, 1e-3, slider=PrescribedSlider(slider, 0.013), **asked)
     assert moving.speed == pytest.approx(np.full(7, 0.013), rel=1e-12)
-    still, fast = (simulate(STRIP, FORCES, HERTZ, 1e-3, prescribed_speed=v, fixed_position=True, **asked)
-                   for v in (0.0, 3.0))  # fmt: skip
+    still, fast = (
+        simulate(STRIP, drive, 1e-3, slider=PrescribedSlider(slider, v, fixed_position=True), **asked)
+        for v in (0.0, 3.0)
+    )
     assert not np.any([still.travelled, fast.travelled])
     assert fast.normal_force == pytest.approx(still.normal_force, abs=1e-7)
 
@@ -126,7 +129,8 @@ def test_feet_stay_up_to_the_static_limit_and_slide_under_the_kinetic_one(feet, 
     for pull, runs in ((0.97, False), (1.03, True)):
         own |= {"external_force": pull, **FEET[feet]}
         slider = Slider(mu=0.2, mu_static=0.5, law="coulomb", coupling=coupling, **own)
-        run = simulate(beam, still, HERTZ, 4e-3, count=30, start="rest", slider=slider, samples=17, modal_damping=0.1)
+        given = {"count": 30, "start": "rest", "modal_damping": 0.1, "keep": Keep(samples=17)}
+        run = simulate(beam, Excitation(still, HERTZ), 4e-3, slider=slider, **given)
         if runs:
             assert np.diff(run.speed[[-3, -1]])[0] == pytest.approx((pull - 0.4) / 0.05 * 5e-4, rel=0.02)
             assert run.friction[9:] == pytest.approx(np.full(8, -0.4), rel=0.01)
@@ -157,9 +161,9 @@ def test_nothing_moves_without_a_drive(feet, supports, model):
     for law, contact, pull in (({"law": "tanh"}, 0, 0.0), ({"law": "coulomb"}, 0, -3.1),
                                ({"law": "coulomb", "mu_static": 0.5}, 1, 7.3)):  # fmt: skip
         slider = Slider(contact=contacts[contact], external_force=pull, **law, **own)
-        still = PointForce(position=0.5, amplitude=0.0)
-        run = simulate(beam, still, 50.0, 0.05, slider=slider, model=model, count=None if model == "analytic" else 12,
-                       start="rest", samples=26)  # fmt: skip
+        still = Excitation(PointForce(position=0.5, amplitude=0.0), 50.0)
+        given = {"model": model, "count": None if model == "analytic" else 12, "keep": Keep(samples=26)}
+        run = simulate(beam, still, 0.05, slider=slider, start="rest", **given)
         assert run.normal_force == pytest.approx(np.full(26, run.normal_force[0]), rel=1e-6)
         assert run.friction[1:] == pytest.approx(np.full(25, -pull), abs=2e-3)
         assert abs(run.travelled).max() < 1e-10
@@ -179,13 +183,14 @@ def test_points_of_a_foot_hold_together_up_to_their_static_limits(points, mu_sta
     forces = PointForce(position=0.05, amplitude=18.0), PointForce(position=0.23, amplitude=12.0, phase_deg=77.0)
     slider = Slider(mass=0.02, mu=0.1, mu_static=mu_static, law="coulomb", position=0.117, preload=60.0,
                     contact=Contact(stiffness=1.5e6, damping=8.0), foot=(Foot(length=0.03, points=points),))  # fmt: skip
-    given = {"model": "fem", "count": 4, "slider": slider, "modal_damping": 0.02, "soft_start_periods": 1.0}
+    drive = Excitation(forces, 700.0, soft_start_periods=1.0)
+    given = {"model": "fem", "count": 4, "slider": slider, "modal_damping": 0.02, "keep": Keep(samples=3)}
     for steps, band in ((800, 3e-3), (1600, 1e-3)):
         step = 1.0 / (700.0 * steps)
-        motion = simulate(beam, forces, 700.0, 8.0 / 700.0, start="rest", step=step, samples=3, **given)
+        motion = simulate(beam, drive, 8.0 / 700.0, start="rest", step=step, **given)
         assert 1e6 * motion.displacement == pytest.approx(micrometres, rel=band)
         assert motion.statistics.unconverged == 0
-    coarse = simulate(beam, forces, 700.0, 8.0 / 700.0, start="rest", samples=3, **given)
+    coarse = simulate(beam, drive, 8.0 / 700.0, start="rest", **given)
     error = abs(1e6 * coarse.displacement / micrometres - 1.0)
     assert error < (0.02 if mu_static is None else 2.0 * coarse.statistics.step_change)
 
@@ -196,9 +201,9 @@ def test_an_impact_on_free_modes_from_rest_keeps_momentum_and_restitution(restit
     modes, load, mass = hermite_modes(STRIP, 5), 0.05, 2.3e-3
     slider = Slider(mass=mass, mu=0.2, gravity=0.0, preload=load, position=0.23, coupling="one-way",
                     contact=Contact(restitution=restitution))  # fmt: skip
-    given = {"model": "fem", "count": 5, "start": "rest", "soft_start_periods": 1.0, "modal_damping": 0.02}
-    run = simulate(STRIP, FORCES, HERTZ, 2e-3, slider=slider, prescribed_speed=0.0, fixed_position=True, samples=2001,
-                   step=1e-6, **given)  # fmt: skip
+    given = {"model": "fem", "count": 5, "start": "rest", "modal_damping": 0.02, "keep": Keep(samples=2001)}
+    drive, held = Excitation(FORCES, HERTZ, soft_start_periods=1.0), PrescribedSlider(slider, 0.0, fixed_position=True)
+    run = simulate(STRIP, drive, 2e-3, slider=held, step=1e-6, **given)
     fall, t, z = load / mass, run.times, run.height[:, 0]
     apart = np.diff(np.r_[0.0, run.events[:, 0], 2e-3])
     lands = [
@@ -252,10 +257,11 @@ def test_a_controller_sets_frequency_amplitude_and_phase_at_every_tick(coupling,
     for count in steps or (0,):
         run, found = None, []
         more = {"slider": slider, "step": tick / count} if count else {}
+        more |= {"model": "fem", "count": 4, "modal_damping": 0.003, "keep": Keep(at=0.123, samples=2)}
         for number in range(5):
             force, hertz, turn = drive(number, run.deflection[-1, 0] if run else 0.0)
-            run = simulate(STRIP, PointForce(position=0.037, amplitude=force, phase_deg=turn), hertz, tick, model="fem",
-                           count=4, modal_damping=0.003, at=[0.123], samples=2, continue_from=run, **more)  # fmt: skip
+            excitation = Excitation(PointForce(position=0.037, amplitude=force, phase_deg=turn), hertz)
+            run = simulate(STRIP, excitation, tick, start=run, **more)
             found.append(run.deflection[-1, 0])
         errors.append(
             [

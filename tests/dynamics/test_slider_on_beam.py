@@ -9,7 +9,7 @@ from reference.slider import hermite_modes, ridden
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from verify import simulate
+from verify import Excitation, Keep, PrescribedSlider, Step, simulate
 from verify.dynamics.result import Motion
 from verify.errors import InputError
 from verify.motor.travelling_wave import terminal_speed
@@ -45,12 +45,10 @@ def reference(kind):
     )
 
 
-def run(slider, steps=240, **more) -> Motion:
+def run(slider, steps=240, grown=2.0, **more) -> Motion:
     model = {} if "model" in more else {"model": "fem", "count": PARTS}
-    return simulate(
-        STRIP, FORCES, HERTZ, DURATION, slider=slider, **model,
-        **{"step": 1 / (HERTZ * steps), "soft_start_periods": 2.0, "modal_damping": ZETA, "samples": 11, **more},
-    )  # fmt: skip
+    given = {"step": 1 / (HERTZ * steps), "modal_damping": ZETA, "keep": Keep(at=0.123, samples=11), **model, **more}
+    return simulate(STRIP, Excitation(FORCES, HERTZ, grown), DURATION, slider=slider, **given)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -58,7 +56,7 @@ def test_beam_and_slider_move_as_one_system_of_equations(kind):
     found, slider = reference(kind), replace(HEAVY, **KINDS[kind])
     errors = []
     for steps in (240, 480, 960):
-        motion = run(slider, steps, at=[0.123])
+        motion = run(slider, steps)
         errors.append([motion.displacement / found.displacement - 1, motion.speed[-1] / found.speed - 1])
     errors = abs(np.array(errors))
     assert errors[-1].max() < 1e-5
@@ -97,7 +95,7 @@ def test_friction_opposes_slip_and_its_impulse_is_the_momentum(law):
     slider = Slider(
         mass=0.4, mu=0.05, law=law, position=0.19, coupling="one-way", slope=300.0 if law == "tanh" else None
     )
-    motion, limit = run(slider, 2000, samples=4001), 0.05 * 0.4 * 9.81
+    motion, limit = run(slider, 2000, keep=Keep(samples=4001)), 0.05 * 0.4 * 9.81
     assert np.all(motion.friction * (motion.speed - motion.surface_speed) <= 1e-14)
     assert motion.largest_friction <= limit * (1 + 1e-12)
     assert motion.mean_friction * motion.duration == pytest.approx(0.4 * motion.speed[-1], rel=1e-9)
@@ -135,10 +133,11 @@ def test_two_way_coupling_vanishes_with_the_mass_as_its_size_does():
 
 
 def test_a_continued_run_of_a_held_slider_equals_one_run():
-    asked = {"model": "fem", "count": PARTS, "slider": HEAVY, "step": 1e-6, "modal_damping": ZETA, "at": [0.123]}
-    whole = simulate(STRIP, FORCES, HERTZ, 2e-3, samples=11, **asked)
-    begun = simulate(STRIP, FORCES, HERTZ, 0.8e-3, samples=5, **asked)
-    ended = simulate(STRIP, FORCES, HERTZ, 1.2e-3, samples=7, **asked, continue_from=begun)
+    asked = {"model": "fem", "count": PARTS, "slider": HEAVY, "step": 1e-6, "modal_damping": ZETA}
+    drive, keeps = Excitation(FORCES, HERTZ), [Keep(at=0.123, samples=n) for n in (11, 5, 7)]
+    whole = simulate(STRIP, drive, 2e-3, keep=keeps[0], **asked)
+    begun = simulate(STRIP, drive, 0.8e-3, keep=keeps[1], **asked)
+    ended = simulate(STRIP, drive, 1.2e-3, start=begun, keep=keeps[2], **asked)
     assert ended.deflection[-1, 0] == pytest.approx(whole.deflection[-1, 0], rel=1e-7)
     assert ended.position[-1] == pytest.approx(whole.position[-1], rel=1e-9)
 
@@ -147,8 +146,9 @@ def test_the_beam_vibrates_on_after_a_moving_load_has_left():
     beam = Beam(length=0.83, width=0.024, thickness=0.0021, youngs_modulus=113e9, density=4430.0)
     speed = 0.5 * np.pi / 0.83 * beam.wave_constant
     load = Slider(mass=1e-9, preload=0.37, mu=0.0, position=0.0)
-    leaves, asked = 0.83 / speed, {"model": "analytic", "modes": 20, "at": [0.415], "step": 2e-5}
-    motion = simulate(beam, (), 40.0, 1.5 * leaves, slider=load, prescribed_speed=speed, samples=1501, **asked)
+    leaves, asked = 0.83 / speed, {"model": "analytic", "modes": 20, "step": 2e-5}
+    moving, keep = PrescribedSlider(load, speed), Keep(at=0.415, samples=1501)
+    motion = simulate(beam, Excitation((), 40.0), 1.5 * leaves, slider=moving, keep=keep, **asked)
     assert motion.statistics.finished
     own = (np.pi / 0.83) ** 2 * beam.wave_constant
     k, t, w = np.pi / 0.83 * np.arange(1, 21), motion.times[motion.times > 1.001 * leaves], 0.0
@@ -171,8 +171,8 @@ def test_a_moving_mass_bends_the_beam_by_all_convective_terms():
     beam = Beam(length=0.83, width=0.024, thickness=0.0021, youngs_modulus=113e9, density=4430.0)
     v = 0.5 * np.pi / 0.83 * beam.wave_constant  # half the critical speed
     load = Slider(mass=0.3 * 0.83 * line, mu=1e-13, position=0.0, speed=v, coupling="two-way")
-    asked = {"model": "analytic", "modes": 6, "at": [0.415], "step": 2e-5, "samples": 2}
-    motion = simulate(beam, still, 40.0, 0.7 * 0.83 / v, slider=load, **asked)
+    asked = {"model": "analytic", "modes": 6, "step": 2e-5, "keep": Keep(at=0.415, samples=2)}
+    motion = simulate(beam, Excitation(still, 40.0), 0.7 * 0.83 / v, slider=load, **asked)
     mass, k = motion.slider.mass, np.arange(1, 7) * np.pi / 0.83
     scale, own = np.sqrt(2 / (0.83 * line)), k**2 * beam.wave_constant
 
@@ -192,14 +192,13 @@ def test_a_mass_at_rest_is_part_of_the_steady_beam(model):
     """W = W_0 / (1 - m omega^2 G) on the sag of its weight."""
     slider = Slider(mass=1.3e-3, mu=1e-9, position=0.25, coupling="two-way")
     forces = (PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0))
-    motion = simulate(
-        PAPER, forces, 4276.0, 1e-3, **model, start="steady", slider=slider, at=[0.31], samples=101, step=1e-6
-    )
+    asked = {"start": "steady", "keep": Keep(at=0.31, samples=101), **model}
+    motion = simulate(PAPER, Excitation(forces, 4276.0), 1e-3, slider=slider, step=1e-6, **asked)
     turn = 2 * np.pi * 4276.0 * motion.times
     rows = np.stack([np.cos(turn), -np.sin(turn), np.ones_like(turn)], axis=1)
     (real, imaginary, _), rest, *_ = np.linalg.lstsq(rows, motion.deflection[:, 0], rcond=None)
     assert np.sqrt(rest[0] / len(turn)) < 2e-4 * np.hypot(real, imaginary)
-    alone = simulate(PAPER, forces, 4276.0, 1e-3, **model, start="steady", at=[0.31], samples=101)
+    alone = simulate(PAPER, Excitation(forces, 4276.0), 1e-3, **asked)
     assert np.hypot(real, imaginary) / abs(alone.deflection).max() == pytest.approx(1.0, abs=0.9)
     assert abs(np.hypot(real, imaginary) / abs(alone.deflection).max() - 1.0) > 0.02
 
@@ -208,7 +207,7 @@ def test_default_steps_resolve_a_step_load_and_report_their_convergence():
     forces = (PointForce(position=0.0116, amplitude=1.0), PointForce(position=0.4884, amplitude=1.0, phase_deg=90.0))
     slider = Slider(mass=1.02e-3, mu=0.2, slope=100.0, normal="massless", coupling="one-way")
     chosen, fine, coarse = (
-        simulate(PAPER, forces, 4276.0, 1e-3, count=392, slider=slider, samples=2, step=step)
+        simulate(PAPER, Excitation(forces, 4276.0), 1e-3, count=392, slider=slider, keep=Keep(samples=2), step=step)
         for step in (None, 5e-8, 1 / (64 * 4276.0))
     )
     assert chosen.displacement == pytest.approx(fine.displacement, rel=2e-3)
@@ -224,13 +223,14 @@ def test_the_slider_stops_at_the_end_of_its_section_and_of_the_beam():
     sections = (Section(length=0.22, thickness=0.001), Section(length=0.18, thickness=0.0016))
     stepped = Beam(length=0.4, width=0.02, thickness=0.001, youngs_modulus=7e10, density=2700.0, section=sections)
     slider = Slider(mass=0.01, mu=1e-6, speed=9.0, position=0.19, coupling="one-way")
-    at_step = simulate(stepped, FORCES[0], 400.0, 0.02, count=40, slider=slider)
-    off = simulate(STRIP, FORCES[0], 400.0, 0.1, count=12, slider=slider)
+    drive = Excitation(FORCES[0], 400.0)
+    at_step = simulate(stepped, drive, 0.02, count=40, slider=slider)
+    off = simulate(STRIP, drive, 0.1, count=12, slider=slider)
     assert at_step.statistics.stopped.startswith("came to a step of beam.section at 0.22")
     assert off.statistics.stopped == "left the beam"
     assert at_step.end.time == pytest.approx(0.03 / 9.0, rel=0.02)
-    with pytest.raises(InputError, match="continue_from"):
-        simulate(STRIP, FORCES[0], 400.0, 0.1, count=12, slider=slider, continue_from=off)
+    with pytest.raises(InputError, match="start: its slider left the beam"):
+        simulate(STRIP, drive, 0.1, count=12, slider=slider, start=off)
 
 
 @pytest.mark.parametrize("kinematics", ["tangential", "following"])
@@ -276,10 +276,10 @@ def test_terminal_speed_on_a_pure_wave_equals_its_ode(kinematics, slope, amplitu
     [
         ({"step": 1e-3}, "step"),
         ({"step": 1e-13}, "step"),
-        ({"steps_per_period": 0}, "steps_per_period"),
+        ({"step": Step(per_period=3)}, "step.per_period"),
         ({"slider": 3.0}, "slider"),
         ({"slider": replace(HEAVY, position=0.5)}, "position"),
-        ({"slider": replace(HEAVY, line="raw"), "start": "steady", "soft_start_periods": 0.0}, "line"),
+        ({"slider": replace(HEAVY, line="raw"), "start": "steady", "grown": 0.0}, "line"),
     ],
 )
 def test_bad_sliders_and_steps_are_refused_by_name(more, field):

@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from tests.beams import BAR, BEAMS, HELD, LADEN, close, over
 from tests.reference.dense import Elements, phasor
-from verify import ExactModel, HermiteModel, PointForce, PointMoment, SegmentModel, simulate
+from verify import ExactModel, Excitation, HermiteModel, Keep, PointForce, PointMoment, SegmentModel, simulate
 from verify.chain.system import build_system
 from verify.errors import InputError
 
@@ -72,8 +72,8 @@ def test_a_chain_reads_its_deflection_next_to_a_moment_with_order_two():
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 14), ("segment", 23)])
 def test_a_beam_from_rest_reaches_its_steady_state_under_a_moment(model, count):
     loads = (MOMENT, PointForce(position=0.52, amplitude=2.1, phase_deg=-40.0))
-    own = {"model": model, "count": count, "at": X, "modal_damping": 0.11, "samples": 2}
-    run = simulate(HELD, loads, HERTZ, 1200 / HERTZ, soft_start_periods=7, **own)
+    own = {"model": model, "count": count, "modal_damping": 0.11, "keep": Keep(at=X, samples=2)}
+    run = simulate(HELD, Excitation(loads, HERTZ, soft_start_periods=7), 1200 / HERTZ, **own)
     # the steady exact beam has a loss factor: its modes are compared with those of many elements
     model = {None: HermiteModel(HELD, 90), 14: HermiteModel(HELD, 14), 23: SegmentModel(HELD, 23)}[count]
     steady = model.harmonic(loads, HERTZ, modal_damping=0.11).deflection(X).real

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
 from tests.beams import PAPER as STRIP
-from verify import Contact, ExactModel, PointForce, Slider, simulate
+from verify import Contact, ExactModel, Excitation, Keep, PointForce, PrescribedSlider, Slider, simulate
 
 HERTZ = 4276.0
 OMEGA, PERIOD = 2.0 * np.pi * HERTZ, 1.0 / HERTZ
@@ -32,11 +32,29 @@ def drive(amplitude, backward=0.0):
     return forces, Waves(amplitude + 0j, backward * amplitude + 0j, k, OMEGA)
 
 
-def on_strip(slider, amplitude=1e-6, backward=0.0, periods=5, steps=None, **asked):
+def on_strip(
+    slider,
+    amplitude=1e-6,
+    backward=0.0,
+    periods=5,
+    steps=None,
+    samples=11,
+    speed=None,
+    fixed_position=False,
+    start=None,
+):
     """A motor on the steady exact strip, from MIDDLE unless the slider has a position; `steps` per period."""
     slider = replace(slider, position=MIDDLE) if slider.position is None else slider
-    given = {"model": "analytic", "samples": 11, "step": PERIOD / steps if steps else None, **asked}
-    return simulate(STRIP, drive(amplitude, backward)[0], HERTZ, periods * PERIOD, slider=slider, **given)
+    return simulate(
+        STRIP,
+        Excitation(drive(amplitude, backward)[0], HERTZ),
+        periods * PERIOD,
+        model="analytic",
+        slider=PrescribedSlider(slider, speed, fixed_position),
+        start=start,
+        step=PERIOD / steps if steps else None,
+        keep=Keep(samples=samples),
+    )
 
 
 def slider_of(point, **own):

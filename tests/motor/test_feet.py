@@ -9,7 +9,7 @@ import reference.motor as by
 from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PAIR, PERIOD, STRIP, drive, on_strip
 from msgspec.structs import replace
 
-from verify import Contact, Foot, Slider, simulate
+from verify import Contact, Excitation, Foot, Keep, Slider, simulate
 from verify.analysis.margins import sag_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.exact.contact import layer
@@ -45,7 +45,7 @@ def errors(case, steps):
     feet = (Foot(length=spans * LENGTH, points=n, pitches=pitches),)
     contact = Contact(stiffness=foot.stiffness, damping=damping)
     slider = put(mass=foot.mass, preload=foot.load, contact=contact, foot=feet)
-    run = on_strip(slider, 1e-6, 0.1, PERIODS, steps, prescribed_speed=foot.speed, samples=PERIODS + 1)
+    run = on_strip(slider, 1e-6, 0.1, PERIODS, steps, speed=foot.speed, samples=PERIODS + 1)
     motion = max(
         np.abs(run.height[1:, 0] - rows[:, 0]).max() / 1e-6,
         np.abs(run.pitch[1:, 0] - rows[:, 2]).max() * spans * LENGTH / 1e-6,
@@ -73,7 +73,7 @@ def slid(phi, r, epsilon=0.0, n=61, steps=127):
     contact = Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give)
     feet = (Foot(length=LENGTH, points=n, pitches=False, mass=0.05),)
     slider = put(mass=0.05, speed=-r * CRESTS, preload=load, foot=feet, contact=contact)
-    given = {"prescribed_speed": -r * CRESTS, "fixed_position": True, "samples": 4}
+    given = {"speed": -r * CRESTS, "fixed_position": True, "samples": 4}
     return on_strip(slider, HEIGHT, periods=3, steps=steps, **given), load
 
 
@@ -120,9 +120,7 @@ def test_a_short_foot_drives_by_its_length(waves):
     foot = Foot(length=waves * LENGTH * n / (n - 1.0), points=n, pitches=False, mass=2e-6) if waves else Foot(mass=2e-6)
     slider = put(preload=0.01, contact=Contact(stiffness=3e9, damping=40.0), foot=(foot,))
     for r in (0.0, 0.3) if waves else (0.0,):
-        run = on_strip(
-            slider, HEIGHT, periods=2, steps=16000, prescribed_speed=-r * CRESTS, fixed_position=True, samples=3
-        )
+        run = on_strip(slider, HEIGHT, periods=2, steps=16000, speed=-r * CRESTS, fixed_position=True, samples=3)
         wanted = by.short_foot_force(span, r) if waves else 0.0
         assert -run.friction[-1] / (MU * 0.01) == pytest.approx(wanted, abs=0.02)
 
@@ -153,9 +151,9 @@ SLIDER = Slider(
 )
 
 
-def moved(slider, seconds=4e-3, forces=PAIR, beam=STRIP, **given):
-    kept = {"model": "segment", "count": 49, "samples": 18, **given}
-    return simulate(beam, forces, HERTZ, seconds, slider=slider, **kept)
+def moved(slider, seconds=4e-3, forces=PAIR, beam=STRIP, samples=18, **given):
+    kept = {"model": "segment", "count": 49, "keep": Keep(samples=samples), **given}
+    return simulate(beam, Excitation(forces, HERTZ), seconds, slider=slider, **kept)
 
 
 def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():

@@ -8,8 +8,7 @@ import reference.motor as by
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from msgspec.structs import replace
 
-from verify.dynamics import layout as records
-from verify.dynamics.layout import LANDS, LEAVES
+from verify.contact.state import LANDS, LEAVES
 from verify.exact.contact import impact
 from verify.problem.slider import Contact, Slider
 
@@ -25,7 +24,7 @@ def point(contact, **given):
 def shaken(ratio, contact, periods=12, steps=64, **asked):
     """(run, phases of landings, of leavings) held over a place that shakes as A sin theta, A = ratio g/omega^2."""
     amplitude = ratio * GRAVITY / OMEGA**2
-    run = on_strip(point(contact), amplitude, periods=periods, steps=steps, **{"prescribed_speed": 0.0, **asked})
+    run = on_strip(point(contact), amplitude, periods=periods, steps=steps, **{"speed": 0.0, **asked})
     phases = run.events[:, 0] * OMEGA + 0.5 * pi - drive(amplitude)[1].k * MIDDLE
     phases -= 2.0 * pi * np.floor(phases[:1] / (2.0 * pi))
     return run, phases[run.events[:, 1] == LANDS], phases[run.events[:, 1] == LEAVES]
@@ -75,7 +74,7 @@ def test_impacts_lose_the_kinetic_energy_that_restitution_leaves_out(ratio, rest
 def test_the_work_that_holds_a_speed_is_mu_n_times_the_way(ratio, restitution):
     held = -3e-6
     contact = Contact(restitution=restitution)
-    run, *_ = shaken(ratio, contact, 6, 640, prescribed_speed=held, fixed_position=True, samples=2)
+    run, *_ = shaken(ratio, contact, 6, 640, speed=held, fixed_position=True, samples=2)
     assert run.energy.load_work == pytest.approx(-0.2 * run.normal_force[-1] * 6.0 * PERIOD * held, rel=1e-9)
     assert abs(run.energy.residual) < 1e-6 * run.energy.friction_loss
 
@@ -84,16 +83,16 @@ def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     """(phases of landings, the bounce, run) of a point that has left in step, but for `off` of its speed."""
     amplitude, bounce = ratio * GRAVITY / OMEGA**2, by.periodic_bounce(ratio, restitution)
     slider = point(Contact(restitution=restitution), mu=mu)
-    before = on_strip(slider, amplitude, periods=1, steps=64, prescribed_speed=0.0)
+    before = on_strip(slider, amplitude, periods=1, steps=64, speed=0.0)
     lead = (0.5 * pi - drive(amplitude)[1].k * MIDDLE) % (2.0 * pi)
     flown, speed = (lead - bounce.phase) % (2.0 * pi), (1.0 + off) * bounce.speed
     feet = np.zeros((1, 4))
     feet[0, 0] = amplitude * (sin(bounce.phase) + speed * flown - 0.5 * flown**2 / ratio)
     feet[0, 1] = amplitude * OMEGA * (speed - flown / ratio)
     touch = before.end.contact.points.copy()
-    touch[0, records.DEPTH] = -1.0  # in the air
+    touch["depth"] = -1.0  # in the air
     went = replace(before, end=replace(before.end, contact=replace(before.end.contact, feet=feet, points=touch)))
-    asked = {"prescribed_speed": held, "samples": periods + 1, "continue_from": went}
+    asked = {"speed": held, "samples": periods + 1, "start": went}
     run = on_strip(slider, amplitude, periods=periods, steps=64, **asked)
     return run.events[run.events[:, 1] == LANDS, 0] * OMEGA + lead, bounce, run
 
@@ -149,7 +148,7 @@ def test_a_stiff_spring_with_a_dashpot_tends_to_a_hard_contact_of_its_restitutio
 @pytest.mark.parametrize("ratio", [0.35, 0.8])
 def test_a_point_that_stays_on_is_driven_by_the_troughs(ratio):
     """N = P (1 - Gamma sin theta) and u = -V sin theta: 2 Gamma/pi of mu P in the mean, against the crests."""
-    asked = {"prescribed_speed": 0.0, "fixed_position": True, "samples": 4}
+    asked = {"speed": 0.0, "fixed_position": True, "samples": 4}
     run = on_strip(point(Contact()), ratio * GRAVITY / OMEGA**2, periods=3, steps=1000, **asked)
     assert len(run.events) == 0
     assert run.normal_force[-1] == pytest.approx(MASS * GRAVITY, rel=1e-5)
@@ -181,7 +180,7 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_the_ode_says(law, slope)
 def test_a_point_kept_at_its_place_lands_once_a_period_at_any_speed(speed, steps):
     ratio, amplitude = 1.1, 4.1e-7
     slider = point(Contact(), gravity=amplitude * OMEGA**2 / ratio)
-    run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, prescribed_speed=speed, fixed_position=True)
+    run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, speed=speed, fixed_position=True)
     share = 1.0 - (impact.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
     assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
     assert run.contact_fraction[2:].mean() == pytest.approx(share, abs=1e-5)
@@ -196,9 +195,7 @@ def test_friction_of_a_hard_point_reverses_within_the_step(speed, steps):
     _, rise, _, along = by.surface(drive(amplitude, back)[1].at, MIDDLE, times, HALF)
     wanted = np.mean(np.sign(along - speed) * (1.0 + np.gradient(rise, times) / gravity))
     slider = point(Contact(), gravity=gravity)
-    run = on_strip(
-        slider, amplitude, back, periods=4, steps=steps, samples=5, prescribed_speed=speed, fixed_position=True
-    )
+    run = on_strip(slider, amplitude, back, periods=4, steps=steps, samples=5, speed=speed, fixed_position=True)
     assert run.friction[1:].mean() / (0.2 * MASS * gravity) == pytest.approx(wanted, abs=1e-3)
 
 
@@ -207,7 +204,7 @@ def test_a_run_continued_in_flight_equals_one_run():
     slider = replace(slider, contact=Contact(restitution=0.35))
     whole, run = on_strip(slider, periods=9, samples=10), None
     for _ in range(9):
-        run = on_strip(slider, periods=1, samples=2, continue_from=run)
+        run = on_strip(slider, periods=1, samples=2, start=run)
     assert np.count_nonzero(whole.events[:, 1] == LANDS) > 2
     assert run.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-6)
     assert run.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)

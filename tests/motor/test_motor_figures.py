@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from reference.motor import bounces
 from scipy.integrate import solve_ivp
 
-from verify import Beam, Contact, Foot, InputError, PointForce, Slider, simulate
+from verify import Beam, Contact, Excitation, Foot, InputError, PointForce, Slider, simulate
 from verify.analysis.solution_cache import SolutionCache
 from verify.exact.contact import layer
 from verify.motor.curves import no_load, reversal, stop, transient
@@ -454,8 +454,6 @@ def pressed(**given):
         ({"foot": (Foot(length=0.1, points=3),), "position": 0.03}, {}, "slider.position = 0.03"),
         ({"preload": 0.0, "foot": (Foot(face="lower"),)}, {}, "slider.preload"),
         ({"contact": Contact(stiffness=6e7)}, {"step": 3e-5}, "step = 3e-05"),
-        ({}, {"prescribed_speed": float("nan")}, "prescribed_speed"),
-        ({}, {"prescribed_speed": [0.1, 0.2]}, "prescribed_speed"),
         ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'"),
         ({"contact": Contact(), "foot": (Foot(offset=0.003),)}, {}, "slider.foot.offset = 0.003"),
         ({"contact": Contact(), "preload_stiffness": 3.0}, {}, "slider.preload_stiffness = 3.0"),
@@ -464,13 +462,15 @@ def pressed(**given):
     ],
 )
 def test_a_motor_that_cannot_run_is_refused_by_name(slider, given, said):
-    asked = {"beam": BAR, "model": "fem", "count": 17, "samples": 3, **given}
+    asked = {"beam": BAR, "model": "fem", "count": 17, **given}
     with pytest.raises(InputError) as refused:
-        simulate(forces=TWO, frequency_hz=3130.0, duration=6e-4, slider=pressed(**slider), **asked)
+        simulate(excitation=Excitation(TWO, 3130.0), duration=6e-4, slider=pressed(**slider), **asked)
     assert said in str(refused.value)
 
 
 @pytest.mark.parametrize(("field", "own"), [("coupling", {"coupling": "two-way"}), ("contact", {"contact": None})])
 def test_sliders_on_one_beam_share_coupling_and_kind_of_contact(field, own):
     with pytest.raises(InputError, match=rf"slider\.{field}"):
-        simulate(BAR, TWO, 3130.0, 1e-4, slider=[pressed(position=0.1), pressed(position=0.2, **own)], count=9)
+        simulate(
+            BAR, Excitation(TWO, 3130.0), 1e-4, slider=[pressed(position=0.1), pressed(position=0.2, **own)], count=9
+        )

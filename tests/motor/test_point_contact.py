@@ -30,7 +30,7 @@ def reference(name):
 
 @cache
 def run(name, steps):
-    asked = {"prescribed_speed": CASES[name].prescribed, "samples": PERIODS + 1}
+    asked = {"speed": CASES[name].prescribed, "samples": PERIODS + 1}
     return on_strip(slider_of(CASES[name]), AMPLITUDE, BACK, PERIODS, steps, **asked)
 
 
@@ -71,5 +71,5 @@ def test_the_least_normal_force_below_lift_off_is_the_closed_form(ratio, zeta):
     for share in (0.5, 0.9, 1.1):
         load = MASS * AMPLITUDE * OMEGA**2 / (share * lift_off_ratio(ratio, zeta))
         slider = slider_of(Point(MASS, load, stiffness, damping))
-        found = on_strip(slider, periods=40, steps=400, prescribed_speed=0.0, samples=16001)
+        found = on_strip(slider, periods=40, steps=400, speed=0.0, samples=16001)
         assert found.pressures[-2000:].min() / load == pytest.approx(max(1.0 - share, 0.0), abs=2e-3)

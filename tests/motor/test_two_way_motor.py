@@ -11,7 +11,20 @@ from driven_strip import MIDDLE, PAIR, PERIOD, STRIP, drive, on_strip, slider_of
 from msgspec.structs import replace
 from reference.slider import hermite_modes
 
-from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, simulate
+from verify import (
+    Beam,
+    Contact,
+    Excitation,
+    Foot,
+    InputError,
+    Keep,
+    PointForce,
+    PointSpring,
+    PrescribedSlider,
+    Slider,
+    Step,
+    simulate,
+)
 from verify.dynamics.linear_system import basis_of
 
 BEAM = Beam(length=0.31, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -39,9 +52,9 @@ def put(given, **own):
 
 @cache
 def run(name, steps):
-    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "soft_start_periods": 1.0, "start": "rest"}
-    asked |= {"samples": TURNS + 1, "step": TURN / steps}
-    return simulate(BEAM, FORCES, HERTZ, TURNS * TURN, slider=put(CASES[name]), **asked)
+    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "start": "rest"}
+    asked |= {"keep": Keep(samples=TURNS + 1), "step": TURN / steps}
+    return simulate(BEAM, Excitation(FORCES, HERTZ, 1.0), TURNS * TURN, slider=put(CASES[name]), **asked)
 
 
 def errors(name, steps):
@@ -92,10 +105,9 @@ def test_a_motor_that_stays_on_is_an_added_mass_on_a_spring(share, start):
     slider = put({}, mass=mass, mu=1e-9, preload=2.0, contact=Contact(stiffness=stiffness))
     small = [replace(one, amplitude=1e-3 * one.amplitude) for one in FORCES]
     per, turns, grown = (400, 60, 20.0) if start == "rest" else (400, 700, 0.0)
-    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "start": start, "soft_start_periods": grown}
-    found = simulate(
-        BEAM, small, HERTZ, turns * TURN, slider=slider, samples=turns * per // 20 + 1, step=TURN / per, **asked
-    )
+    asked = {"model": "fem", "count": 4, "modal_damping": ZETA, "start": start, "step": TURN / per}
+    keep = Keep(samples=turns * per // 20 + 1)
+    found = simulate(BEAM, Excitation(small, HERTZ, grown), turns * TURN, slider=slider, keep=keep, **asked)
     last = found.times > (turns - 20) * TURN + 1e-9
     height = found.height[last, 0] - found.height[last, 0].mean()
     height = 2.0 * np.mean(height * np.exp(-1j * OMEGA * found.times[last]))
@@ -106,9 +118,9 @@ def test_a_motor_that_stays_on_is_an_added_mass_on_a_spring(share, start):
 def test_a_stiff_contact_under_a_large_preload_tends_to_a_slider_that_never_leaves():
     """N = P + m_f z'' in place of P: of first order in the foot's mass."""
     given = {"mass": 2e-3, "mu": 0.2, "slope": 150.0, "gravity": 0.0, "coupling": "one-way", "preload": 15.0}
-    asked = {"model": "analytic", "start": "steady", "samples": 7, "step": PERIOD / 4000.0}
+    asked = {"model": "analytic", "start": "steady", "keep": Keep(samples=7), "step": PERIOD / 4000.0}
     slider = Slider(**given, position=MIDDLE)
-    always = simulate(STRIP, drive(1e-6, 0.1)[0], STRIP_HERTZ, 6.0 * PERIOD, slider=slider, **asked)
+    always = simulate(STRIP, Excitation(drive(1e-6, 0.1)[0], STRIP_HERTZ), 6.0 * PERIOD, slider=slider, **asked)
     off = []
     for foot in (4e-4, 2e-4, 1e-4):
         contact = Contact(stiffness=2e8, damping=2.0 * np.sqrt(2e8 * foot))
@@ -122,9 +134,9 @@ def test_a_stiff_contact_under_a_large_preload_tends_to_a_slider_that_never_leav
 def held_at(speed, steps):
     """Mean friction over mu N on a point that rubs a little and stays on, from rest over twelve periods."""
     slider = put({}, mu=0.004, preload=30.0, contact=Contact(stiffness=4e5, damping=30.0))
-    asked = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "samples": 13}
-    asked |= {"step": TURN / steps, "prescribed_speed": speed, "fixed_position": True}
-    found = simulate(BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, **asked)
+    asked = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "step": TURN / steps}
+    held = PrescribedSlider(slider, speed, fixed_position=True)
+    found = simulate(BEAM, Excitation(FORCES, HERTZ), 12 * TURN, slider=held, keep=Keep(samples=13), **asked)
     assert found.contact_fraction[1:].mean() == pytest.approx(1.0, rel=1e-9)
     return found.friction[1:].mean() / (slider.mu * slider.preload)
 
@@ -157,17 +169,11 @@ SPRUNG = Slider(
 )
 
 
-def crossing(slider=SPRUNG, duration=0.006, amplitude=0.0, **given):
-    asked = {
-        "model": "fem",
-        "count": 10,
-        "start": "rest",
-        "modal_damping": 0.0,
-        "prescribed_speed": 20.0,
-        "samples": 37,
-    }
-    forces = [PointForce(position=0.05, amplitude=amplitude)]
-    return simulate(CANTILEVER, forces, 5000.0, duration, slider=slider, **{**asked, **given})
+def crossing(slider=SPRUNG, duration=0.006, amplitude=0.0, speed=20.0, fixed_position=False, samples=37, **given):
+    asked = {"model": "fem", "count": 10, "start": "rest", "modal_damping": 0.0, "keep": Keep(samples=samples)}
+    excitation = Excitation(PointForce(position=0.05, amplitude=amplitude), 5000.0)
+    slider = PrescribedSlider(slider, speed, fixed_position)
+    return simulate(CANTILEVER, excitation, duration, slider=slider, **{**asked, **given})
 
 
 @pytest.mark.parametrize("face", ["upper", "lower"])
@@ -175,7 +181,7 @@ def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
     """Nothing drives it or damps it. A slope of up to 0.06 gives the feet as much again as the rise of the material."""
     slider = replace(SPRUNG, foot=(replace(SPRUNG.foot[0], face=face),), gravity=0.0)
     before = crossing(slider, duration=4e-4, step=6e-7, samples=2)
-    found = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, continue_from=before)
+    found = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, start=before)
     omegas = basis_of(CANTILEVER, "fem", 10, None, "spline").omegas
     first, last = (
         0.5 * float(one.rates @ one.rates + (omegas * one.q) @ (omegas * one.q)) for one in (before.end, found.end)
@@ -206,7 +212,7 @@ def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_energy(name):
     assert travelled == pytest.approx(found.end.speed * found.end.time, rel=1e-9)
     assert abs(travelled - way) <= 20.0 * found.statistics.step_s
     if name == "springs":
-        fine = crossing(steps_per_period=1600)
+        fine = crossing(step=Step(per_period=1600))
         assert abs(fine.energy.residual) < 2e-6 * fine.energy.slider
         there = crossing(step=fine.statistics.step_s, duration=fine.end.time, samples=2)
         assert there.statistics.stopped == "end"
@@ -217,7 +223,7 @@ def test_a_slider_that_runs_off_the_beam_ends_there_with_state_and_energy(name):
 def test_a_slider_kept_at_its_place_goes_up_no_slope_at_any_speed(coupling):
     slider = replace(SPRUNG, coupling=coupling, mu=0.3)
     given = {"fixed_position": True, "duration": 2e-3, "amplitude": 90.0, "step": 4e-7}
-    still, found = (crossing(slider, prescribed_speed=speed, **given) for speed in (0.0, 7.0))
+    still, found = (crossing(slider, speed=speed, **given) for speed in (0.0, 7.0))
     assert found.energy.slope_work == still.energy.slope_work == 0.0
     assert abs(found.energy.residual) < 2e-4 * found.energy.contact_loss
     if coupling == "one-way":
@@ -229,15 +235,18 @@ def test_a_slider_kept_at_its_place_goes_up_no_slope_at_any_speed(coupling):
 LIGHT = Slider(
     mass=0.01, mu=0.17, law="coulomb", preload=0.3, position=0.237, coupling="two-way", contact=Contact(stiffness=4e5)
 )
-KEPT = {"model": "segment", "count": 49, "samples": 18}
+KEPT = {"model": "segment", "count": 49}
+DRIVEN = Excitation(PAIR, STRIP_HERTZ)
 
 
 def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
     first = replace(LIGHT, coupling="one-way", foot=(Foot(length=0.044, points=23),))
     other = replace(first, mass=0.034, mu=0.11, position=0.331, foot=(Foot(length=0.03, points=11),))
-    both, points = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=[first, other], **KEPT), 0
-    for number, slider in enumerate((first, other)):
-        alone = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=slider, step=both.statistics.step_s, **KEPT)
+    pulled = PrescribedSlider(replace(first, position=0.271), speed=0.0031)
+    both, points = simulate(STRIP, DRIVEN, 4e-3, slider=[first, other, pulled], keep=Keep(samples=18), **KEPT), 0
+    for number, slider in enumerate((first, other, pulled)):
+        asked = {"step": both.statistics.step_s, "keep": Keep(samples=18), **KEPT}
+        alone = simulate(STRIP, DRIVEN, 4e-3, slider=slider, **asked)
         own = slice(points, points := points + len(alone.point_offsets))
         assert both.start[number] == alone.start
         assert both.travelled[:, number] == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
@@ -246,11 +255,11 @@ def test_sliders_that_the_beam_does_not_feel_move_as_each_alone():
 
 
 def test_sliders_feel_each_other_the_less_the_less_presses_the_other_on_and_the_energy_balance_closes():
-    apart, asked = [], {"steps_per_period": 509, **KEPT}
-    alone = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=LIGHT, **asked)
+    apart, asked = [], {"step": Step(per_period=509), "keep": Keep(samples=18), **KEPT}
+    alone = simulate(STRIP, DRIVEN, 4e-3, slider=LIGHT, **asked)
     for share in (1.0, 1e-2, 1e-4):
         second = replace(LIGHT, preload=0.3 * share, mass=0.01 * share, contact=Contact(stiffness=4e5 * share))
-        both = simulate(STRIP, PAIR, STRIP_HERTZ, 4e-3, slider=[LIGHT, replace(second, position=0.331)], **asked)
+        both = simulate(STRIP, DRIVEN, 4e-3, slider=[LIGHT, replace(second, position=0.331)], **asked)
         apart.append(float(np.abs(both.height[:, 0] - alone.height[:, 0]).max()))
         energy = both.energy
         assert abs(energy.residual) < 1e-3 * (abs(energy.normal_work) + abs(energy.tangential_work))
@@ -277,11 +286,12 @@ def test_the_size_of_coupling_is_of_the_loads_of_all_sliders():
         for one in PAIR
     )
     lifted = sum(one.preload * np.abs(pinned_answers(one.position, at, hertz, ratio)) for one in sliders)
-    asked = {"model": "analytic", "modal_damping": ratio, "samples": 2}
-    coupling = simulate(STRIP, PAIR, hertz, 2e-5, slider=sliders, **asked).coupling
+    asked = {"model": "analytic", "modal_damping": ratio, "keep": Keep(samples=2)}
+    excitation = Excitation(PAIR, hertz)
+    coupling = simulate(STRIP, excitation, 2e-5, slider=sliders, **asked).coupling
     assert not coupling.two_way
     assert coupling.normal_size == pytest.approx((lifted / np.abs(driven)).max(), rel=1e-3)
-    assert coupling.normal_size > 1.5 * simulate(STRIP, PAIR, hertz, 2e-5, slider=first, **asked).coupling.normal_size
+    assert coupling.normal_size > 1.5 * simulate(STRIP, excitation, 2e-5, slider=first, **asked).coupling.normal_size
 
 
 @pytest.mark.parametrize("law", ["coulomb", "tanh"])
@@ -292,10 +302,10 @@ def test_two_beams_that_feel_the_slider_between_them_move_as_one_that_feels_half
     own |= {"coupling": "two-way", "preload": 3.0, "contact": Contact(stiffness=4e5, damping=8.0)}
     between = Slider(mass=0.06, foot=(Foot(length=0.03, points=7, mirrored=True),), **own)
     half = Slider(mass=0.03, foot=(Foot(length=0.03, points=7, mass=1e12, pitches=False),), **own)
-    kept = {"model": "fem", "count": 30, "samples": 30, "start": "rest", "soft_start_periods": 2.0}
-    forces = [replace(one, amplitude=60.0) for one in PAIR]
+    kept = {"model": "fem", "count": 30, "keep": Keep(samples=30), "start": "rest"}
+    grown = Excitation([replace(one, amplitude=60.0) for one in PAIR], STRIP_HERTZ, soft_start_periods=2.0)
     two, one, free = (
-        simulate(stiff, forces, STRIP_HERTZ, 4e-3, slider=slider, **kept)
+        simulate(stiff, grown, 4e-3, slider=slider, **kept)
         for slider in (between, half, replace(between, coupling="one-way"))
     )
     assert two.speed[-1] == pytest.approx(one.speed[-1], rel=2e-3)
@@ -307,8 +317,8 @@ def test_a_preload_spring_eases_as_the_beam_gives_way():
     """P/(1 + k_s (1/k + compliance))."""
     own = {"mass": 1e-3, "law": "tanh", "slope": 30.0, "gravity": 0.0, "preload": 0.02, "preload_stiffness": 4e4}
     slider = Slider(mu=0.2, coupling="two-way", position=0.237, contact=Contact(stiffness=1e5), **own)
-    still = [replace(one, amplitude=1e-9) for one in PAIR]
-    found = simulate(STRIP, still, STRIP_HERTZ, 1e-3, slider=slider, model="fem", count=30, samples=5)
+    still = Excitation([replace(one, amplitude=1e-9) for one in PAIR], STRIP_HERTZ)
+    found = simulate(STRIP, still, 1e-3, slider=slider, model="fem", count=30, keep=Keep(samples=5))
     compliance = (0.237 * 0.263) ** 2 / (3.0 * STRIP.bending_stiffness * 0.5)
     assert found.normal_force[1:] == pytest.approx(0.02 / (1.0 + 4e4 * (1e-5 + compliance)), rel=1e-3)
 
@@ -318,9 +328,9 @@ def test_a_continued_run_equals_one_run(coupling):
     contact = Contact(stiffness=3e6, damping=30.0)
     slider = replace(LIGHT, coupling=coupling, preload=1.3, contact=contact, foot=(Foot(length=0.044, points=23),))
     asked = {"slider": slider, **KEPT}
-    whole = simulate(STRIP, PAIR, STRIP_HERTZ, 12 * PERIOD, **{**asked, "samples": 13})
-    first = simulate(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7})
-    second = simulate(STRIP, PAIR, STRIP_HERTZ, 6 * PERIOD, **{**asked, "samples": 7}, continue_from=first)
+    whole = simulate(STRIP, DRIVEN, 12 * PERIOD, keep=Keep(samples=13), **asked)
+    first = simulate(STRIP, DRIVEN, 6 * PERIOD, keep=Keep(samples=7), **asked)
+    second = simulate(STRIP, DRIVEN, 6 * PERIOD, start=first, keep=Keep(samples=7), **asked)
     assert second.times[0] == pytest.approx(first.times[-1])
     assert second.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-7)
     assert second.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
@@ -339,12 +349,12 @@ def test_a_slider_runs_on_a_beam_that_nothing_holds_as_on_soft_springs():
     contact = Contact(stiffness=5e6, damping=30.0)
     slider = Slider(mass=2e-3, mu=0.3, slope=60.0, preload=8.0, position=0.031, coupling="one-way", contact=contact)
     lying = bar(spring=tuple(PointSpring(position=x, stiffness=10.0) for x in (0.0, 0.06)))
-    asked = {"slider": slider, "samples": 3}
-    exact = simulate(bar(), forces, 31e3, 1e-3, model="analytic", **asked)
+    asked, excitation = {"slider": slider, "keep": Keep(samples=3)}, Excitation(forces, 31e3)
+    exact = simulate(bar(), excitation, 1e-3, model="analytic", **asked)
     assert abs(exact.travelled[-1]) > 5e-8
     for model, count in (("segment", 31), ("fem", 40)):
-        free, held = (simulate(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
+        free, held = (simulate(beam, excitation, 1e-3, model=model, count=count, **asked) for beam in (bar(), lying))
         assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
         assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
     with pytest.raises(InputError, match=r"beam\.supports"):
-        simulate(bar(), forces, 31e3, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)
+        simulate(bar(), excitation, 1e-4, slider=replace(slider, coupling="two-way"), model="fem", count=17)

@@ -12,6 +12,7 @@ from verify.actuators.transducers import Stack
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.chain.slider_on_chain import slide_on_chain
+from verify.dynamics.arguments import Excitation, Keep, Step
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
@@ -235,8 +236,8 @@ def test_equals_direct_call():
     fem = float(HermiteModel(STRIP, 9).modes(3).frequencies_hz[2])
     asked = {**FEM, "mode": np.int64(3)}
     assert evaluate("mode.frequency_error", asked, SCENES["bare"], CACHES["bare"]) == (fem - exact) / exact
-    settings = {"model": "segment", "count": 12, "slider": RIDER, "steps_per_period": 40, "samples": 2}
-    run = simulate(DAMPED, FORCES, 731.0, 1.1e-3, **settings)
+    settings = {"model": "segment", "count": 12, "slider": RIDER, "step": Step(per_period=40), "keep": Keep(samples=2)}
+    run = simulate(DAMPED, Excitation(FORCES, 731.0), 1.1e-3, **settings)
     assert figure("slider.displacement") == run.displacement
     assert figure("slider.energy") == pytest.approx(run.energy.friction_loss, rel=1e-12)
     wave = measure(ExactModel(DAMPED).harmonic(FORCES, 731.0), (0.2, 0.5))
@@ -245,21 +246,21 @@ def test_equals_direct_call():
 
 def test_quantities_of_a_slider_that_may_leave_the_beam_are_those_of_its_run():
     scene, cache, time = SCENES["motor"], CACHES["motor"], {"time": 3.1e-3, "soft_start_periods": 0.7}
-    settings = {"model": "fem", "count": 13, "slider": scene.slider, "start": "rest", "soft_start_periods": 0.7}
-    run = simulate(DAMPED, FORCES, 731.0, 3.1e-3, **settings, samples=2)
+    settings = {"model": "fem", "count": 13, "start": "rest", "keep": Keep(samples=2)}
+    grown = Excitation(FORCES, 731.0, soft_start_periods=0.7)
+    run = simulate(DAMPED, grown, 3.1e-3, slider=scene.slider, **settings)
     arguments = {"model": "fem", "count": 13, **time}
     for name in ("displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"):
         assert evaluate(f"slider.{name}", arguments, scene, cache) == getattr(run, name)
     assert evaluate("slider.energy", {**arguments, "of": "slider"}, scene, cache) == run.energy.slider
-    changed = simulate(
-        DAMPED, FORCES, 731.0, 3.1e-3, **{**settings, "slider": replace(scene.slider, mu=0.31)}, samples=2
-    )
+    changed = simulate(DAMPED, grown, 3.1e-3, slider=replace(scene.slider, mu=0.31), **settings)
     assert evaluate("slider.displacement", {**arguments, "mu": 0.31}, scene, cache) == changed.displacement
 
 
 def test_a_slider_that_may_leave_the_nonlinear_chain_moves_as_by_a_direct_call():
     scene = replace(SCENES["undamped"], slider=replace(POINT, coupling="one-way"))
-    run = slide_on_chain(STRIP, FORCES, 731.0, 7e-4, slider=scene.slider, count=6, steps_per_period=40, samples=2)
+    settings = {"count": 6, "step": Step(per_period=40), "keep": Keep(samples=2)}
+    run = slide_on_chain(STRIP, Excitation(FORCES, 731.0), 7e-4, slider=scene.slider, **settings)
     value = evaluate("chain.slider_displacement", {"segments": 6}, scene, SolutionCache(STRIP))
     assert value == run.displacement != 0.0
 

@@ -18,6 +18,7 @@ from verify.chain.kinematics import at_rest
 from verify.chain.motion import simulate as simulate_chain
 from verify.chain.motion import step_limit
 from verify.chain.system import build_system
+from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.simulate import simulate
 from verify.elements.stock import stock_frequency_hz
 from verify.engines import ENGINES, chain_of, missing
@@ -32,6 +33,7 @@ LINKS, SLIDER_LINKS = 49, (49, 399)
 SOFT_START = 2.0  # periods over which forces grow: a step load has no integer order of convergence
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
+ENDS = Keep(samples=2)
 SLIDER = Slider(mass=1.0193679918450561e-3, mu=0.2, slope=1e4)
 
 
@@ -111,8 +113,8 @@ def field(problem: Problem) -> Iterator[Question]:
 
 def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
     """Motion from rest."""
-    driven = (problem.beam, problem.forces, problem.frequency_hz, problem.duration)
-    run = simulate(*driven, model=model, count=count, soft_start_periods=SOFT_START, **more)
+    excitation = Excitation(problem.forces, problem.frequency_hz, SOFT_START)
+    run = simulate(problem.beam, excitation, problem.duration, model=model, count=count, **more)
     if not run.statistics.finished:
         raise InputError(f"the run {run.statistics.stopped}: shorten motion.duration")
     return run
@@ -120,7 +122,7 @@ def moved(problem: Problem, model: str, count: int | None, **more: Any) -> Any:
 
 def transient(problem: Problem) -> Iterator[Question]:
     """Deflection of a point in time by number of parts."""
-    more: dict[str, Any] = {"at": [0.37 * problem.beam.length], "samples": 201}
+    more: dict[str, Any] = {"keep": Keep(at=0.37 * problem.beam.length)}
 
     def solver(model: str) -> Callable[[int], Any]:
         return lambda n: moved(problem, model, n or None, **more).deflection[:, 0]
@@ -137,7 +139,7 @@ def slider(problem: Problem) -> Iterator[Question]:
     one = replace(problem.slider, coupling="one-way")
 
     def solver(model: str) -> Callable[[int], float]:
-        return lambda n: float(moved(problem, model, n or None, slider=one, samples=2).travelled[-1])
+        return lambda n: float(moved(problem, model, n or None, slider=one, keep=ENDS).travelled[-1])
 
     exact = solver("analytic")(0)
     methods = by_model(problem, solver, "exact, 400 modes")
@@ -153,7 +155,7 @@ def ride(problem: Problem) -> Iterator[Question]:
 
         def run(per_period: int) -> float:
             step = 1.0 / (problem.frequency_hz * per_period)
-            return float(moved(problem, "segment", LINKS, slider=one, step=step, samples=2).travelled[-1])
+            return float(moved(problem, "segment", LINKS, slider=one, step=step, keep=ENDS).travelled[-1])
 
         fine, finer = run(1024), run(2048)
         steps = (16, 32, 64, 128, 256)

@@ -8,7 +8,7 @@ alternating x and y, so that small stretches have no cancellation.
 import numpy as np
 
 from verify.arrays import Array
-from verify.chain.runge_kutta import ACCELERATION
+from verify.chain.runge_kutta import ACCELERATION, Model
 from verify.chain.system import ChainSystem, circular
 from verify.jit import inline, jit
 from verify.segments.chain import joint_masses
@@ -36,8 +36,9 @@ def twist(force: Array, i: int, now: float, c: float, s: float, moment: float) -
 
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath={"contract"})
-def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, gravity: Array, scratch: Array) -> None:
+def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     """Accelerations of joints 0..N into out[2 N + 2:], zero at bilateral supports (see `runge_kutta`)."""
+    links, loads, gravity, _ = model
     n, size = links.shape[0] - 1, 2 * links.shape[0]
     u, v, force = y[:size], y[size:], out[size:]
     for j in range(size):
@@ -75,8 +76,8 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, gravi
             force[2 * j + axis] -= links[j + 1, column] * force[2 * j + 2 + axis]
 
 
-def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, gravity, scratch) of a chain, the data of `accelerate`."""
+def flatten(system: ChainSystem) -> Model:
+    """The data of `accelerate`; its numbers are the components of gravity."""
     n, lengths = system.n_links, system.lengths
     loads = [
         (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
@@ -93,4 +94,5 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
             factor = coupling[j - 1] * reciprocal
             reciprocal = 0.0 if fixed and j == n else 1.0 / (diagonal[j] - factor * coupling[j - 1])
             links[j, FACTOR + 2 * axis : FACTOR + 2 * axis + 2] = factor, reciprocal
-    return links, np.array(loads, dtype=float).reshape(len(loads), 7), np.array(system.gravity, float), np.zeros((1, 1))
+    sheet, gravity = np.array(loads, dtype=float).reshape(len(loads), 7), np.array(system.gravity, float)
+    return Model(links, sheet, gravity, np.zeros((1, 1)))

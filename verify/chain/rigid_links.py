@@ -13,7 +13,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.chain.kinematics import place
-from verify.chain.runge_kutta import ACCELERATION
+from verify.chain.runge_kutta import ACCELERATION, Model
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
 
@@ -117,8 +117,9 @@ def from_base(links: Array, roller: bool, drift: float, w: Array, out: Array) ->
 
 
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath=FAST)
-def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbers: Array, w: Array) -> None:
+def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     """Write derivatives of rates, dissipation and work to out[N:], after the closure of a tip on a roller."""
+    links, loads, numbers, w = model
     n = links.shape[0]
     theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
     turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
@@ -162,8 +163,8 @@ def accelerate(t: float, y: Array, out: Array, links: Array, loads: Array, numbe
     out[2 * n], out[2 * n + 1] = lost, power
 
 
-def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
-    """(links, loads, numbers, scratch) of a chain, the data of `accelerate`."""
+def flatten(system: ChainSystem) -> Model:
+    """The data of `accelerate`."""
     half, masses, n = system.lengths / 2.0, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
     along = masses * system.axial_inertia
@@ -174,7 +175,7 @@ def flatten(system: ChainSystem) -> tuple[Array, Array, Array, Array]:
         for p in system.loads
     ]
     numbers = (system.hub_rate, system.tip == "roller", system.axial_spring, 0.0, system.length)
-    return (
+    return Model(
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
         np.array(loads, dtype=float).reshape(len(loads), 7),
         np.array(numbers, dtype=float),

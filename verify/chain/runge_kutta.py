@@ -15,18 +15,20 @@ from verify.arrays import Array, Indices
 from verify.jit import FAST, inline, jit
 
 _vector, _table = types.Array(types.float64, 1, "C"), types.Array(types.float64, 2, "C")
-MODEL = (_table, _table, _vector, _table)
-ACCELERATION = types.void(types.float64, _vector, _vector, *MODEL)
-"""accelerate(t, y, out, links, loads, numbers, scratch), the last four being data of the acceleration."""
-MARCH = types.int64(
-    types.FunctionType(ACCELERATION), *MODEL, _table, _vector, _vector, types.int64, _vector, _table, _vector, _vector,
-    _table, _vector, types.Array(types.int64, 1, "C"), types.int64,
-)  # fmt: skip
 RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 TIME, STEP = 0, 1  # entries of `clock`
 RELATIVE, ABSOLUTE, ABSOLUTE_RATE, TURN, LARGEST, LARGEST_RATE, FURTHEST = range(7)
 """Entries of `control`: tolerances, largest mean change of a coordinate per step, largest rms and coordinate so far."""
 STEPS, EVALUATIONS, KEPT = range(3)  # entries of `counts`
+
+
+class Model(NamedTuple):
+    """Data of an acceleration."""
+
+    links: Array
+    loads: Array
+    numbers: Array
+    scratch: Array
 
 
 class Tableau(NamedTuple):
@@ -36,6 +38,36 @@ class Tableau(NamedTuple):
     c: Array  # (s,)
     weights: Array
     """(s + 1,), error estimate of order 4, the last for the derivative at the result; empty for fixed steps."""
+
+
+class State(NamedTuple):
+    """State of a march, its control and working space."""
+
+    y: Array
+    """(2 n + m,), coordinates, rates, quadratures at `clock`[TIME]."""
+    k: Array
+    """(s + 3, y.size), derivatives of the stages, new and trial states."""
+    clock: Array
+    """(2,), TIME and STEP: fixed for a tableau without `weights`, else controlled."""
+    control: Array
+    counts: Indices
+
+
+_named: Any = types.NamedTuple
+_model = _named((_table, _table, _vector, _table), Model)
+_state = _named((_vector, _table, _vector, _vector, types.Array(types.int64, 1, "C")), State)
+ACCELERATION = types.void(types.float64, _vector, _vector, _model)
+"""accelerate(t, y, out, model)"""
+MARCH = types.int64(
+    types.FunctionType(ACCELERATION),
+    _model,
+    _named((_table, _vector, _vector), Tableau),
+    types.int64,
+    _state,
+    _vector,
+    _table,
+    types.int64,
+)
 
 
 def _tableau(rows: list[list[float]], c: list[float], weights: list[float]) -> Tableau:
@@ -108,10 +140,10 @@ def control_step(
 
 @inline(fastmath={"contract"})
 def step_stages(
-    accelerate: Callable[..., None], links: Array, loads: Array, numbers: Array, scratch: Array,
-    a: Array, c: Array, n: int, t: float, h: float, y: Array, k: Array, new: Array,
-) -> None:  # fmt: skip
+    accelerate: Callable[..., None], model: Model, tableau: Tableau, n: int, h: float, march: State, new: Array
+) -> None:
     """Write the result of a step to `new`, the derivatives of stages 1 to s and at the result to k[1:]."""
+    a, c, y, k, t = tableau.a, tableau.c, march.y, march.k, march.clock[TIME]
     for s in range(1, c.size + 1):
         first = h * a[s, 0]
         for i in range(y.size):
@@ -121,7 +153,7 @@ def step_stages(
             if weight != 0.0:
                 for i in range(y.size):
                     new[i] += weight * k[j, i]
-        accelerate(t + h if s == c.size else t + c[s] * h, new, k[s], links, loads, numbers, scratch)
+        accelerate(t + h if s == c.size else t + c[s] * h, new, k[s], model)
         for i in range(n):
             k[s, i] = new[n + i]
 
@@ -140,21 +172,26 @@ def take(n: int, new: Array, rates: Array, y: Array, k0: Array, control: Array) 
 
 @jit(signature_or_function=MARCH, fastmath={"contract"})
 def march(
-    accelerate: Callable[..., None], links: Array, loads: Array, numbers: Array, scratch: Array,
-    a: Array, c: Array, weights: Array, n: int, y: Array, k: Array, clock: Array, samples: Array, kept: Array,
-    control: Array, counts: Indices, budget: int,
-) -> int:  # fmt: skip
-    """At most `budget` steps of n coordinates from the state `y` at clock[TIME] to exactly samples[-1]; a status.
+    accelerate: Callable[..., None],
+    model: Model,
+    tableau: Tableau,
+    n: int,
+    state: State,
+    samples: Array,
+    kept: Array,
+    budget: int,
+) -> int:
+    """At most `budget` steps of n coordinates from the state at clock[TIME] to exactly samples[-1]; a status.
 
-    `k` is (s + 3, y.size) scratch, `kept` (samples, y.size). Steps are of clock[STEP], fixed where `weights` is empty,
-    else controlled. Loads may change between calls: the derivative at the start is evaluated anew.
+    `kept` is (samples, y.size). Loads may change between calls: the derivative at the start is evaluated anew.
     """
+    c, weights, (y, k, clock, control, counts) = tableau.c, tableau.weights, state
     last, new, trial, end = c.size, k[c.size + 1], k[c.size + 2], samples[samples.size - 1]
     if counts[KEPT] == 0 and samples[0] <= clock[TIME]:
         for i in range(2 * n):
             kept[0, i] = y[i]
         counts[KEPT] = 1
-    accelerate(clock[TIME], y, k[0], links, loads, numbers, scratch)
+    accelerate(clock[TIME], y, k[0], model)
     for i in range(n):
         k[0, i] = y[n + i]
     for _ in range(budget):
@@ -166,7 +203,7 @@ def march(
             h = end - t
         if t + h == t:
             return TOO_SMALL
-        step_stages(accelerate, links, loads, numbers, scratch, a, c, n, t, h, y, k, new)
+        step_stages(accelerate, model, tableau, n, h, state, new)
         counts[EVALUATIONS] += last
         if weights.size > 0:
             accepted, following = control_step(n, h, weights, y, k, trial, control)
@@ -198,7 +235,7 @@ class Marched(NamedTuple):
 
 def integrate(
     accelerate: Callable[..., None],
-    model: tuple[Array, Array, Array, Array],
+    model: Model,
     tableau: Tableau,
     n: int,
     y: Array,
@@ -215,10 +252,11 @@ def integrate(
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(3, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
+    state = State(y, k, clock, numbers, counts)
     budget, status = max(200_000 // y.size, 16), RUNNING  # some tens of milliseconds between two interrupts
     run: Any = march
     while status == RUNNING:
-        status = run(accelerate, *model, *tableau, n, y, k, clock, samples, kept, numbers, counts, budget)
+        status = run(accelerate, model, tableau, n, state, samples, kept, budget)
         progress((float(clock[TIME]) - start) / max(float(samples[-1]) - start, 1e-300))
     end, last = clock.tolist()
     return Marched(kept[: counts[KEPT]], status, end, last, counts, float(numbers[FURTHEST]))

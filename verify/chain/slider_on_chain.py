@@ -4,11 +4,11 @@ The joints define the paper's C2 contact line over the material coordinate; the 
 shortening of the chain. Steps, margins, coupling and result are those of a run on the linear chain.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace as changed
 from time import perf_counter, thread_time
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from msgspec.structs import replace
@@ -18,20 +18,22 @@ from verify.chain.kinematics import at_rest, energies
 from verify.chain.motion import from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
-from verify.dynamics import layout as lay
+from verify.dynamics.arguments import Excitation, Keep, Sliders, Step, is_sequence
 from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equilibrium, set_down
 from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
-from verify.dynamics.request import request_of
-from verify.dynamics.result import END, Motion
+from verify.dynamics.request import KEEP, Request, request_of
+from verify.dynamics.result import Motion
 from verify.dynamics.slider_run import Progress, SliderRun
-from verify.dynamics.stepping import Contacts, Run
-from verify.errors import InputError
-from verify.linear.positions import Forces, Numbers
+from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
+from verify.dynamics.stepping import Assembly, Run, response_of
+from verify.errors import InputError, shown
 from verify.options import Links, Load
 from verify.problem.beam import Beam
-from verify.problem.slider import Slider
 from verify.segments.reading import contact_line
 from verify.validation import check_integer, check_number
+
+if TYPE_CHECKING:
+    from verify.chain.slider_kernels import Chain
 
 RADIANS = 0.5  # phase of the highest mode per step of the two-way march, rad
 CHUNK, MARCHED = 20_000, 200  # steps between two interrupts, one-way and two-way
@@ -39,21 +41,16 @@ CHUNK, MARCHED = 20_000, 200  # steps between two interrupts, one-way and two-wa
 
 def slide_on_chain(
     beam: Beam,
-    forces: Forces,
-    frequency_hz: float,
+    excitation: Excitation,
     duration: float,
     *,
-    slider: Slider | Sequence[Slider],
+    slider: Sliders,
     count: int,
     links: Links = "rigid",
     load: Load = "reciprocal",
     joint_dashpot: float = 0.0,
-    prescribed_speed: float | Sequence[float | None] | None = None,
-    fixed_position: bool | Sequence[bool] = False,
-    at: Numbers = (),
-    samples: int = 201,
-    step: float | None = None,
-    steps_per_period: int | None = None,
+    step: Step | float | None = None,
+    keep: Keep = KEEP,
     tolerance: float = 1e-9,
     progress: Callable[[float], None] = lambda part: None,
 ) -> Motion:
@@ -64,18 +61,34 @@ def slide_on_chain(
     of `tolerance`; two-way by steps that resolve its highest mode, from its equilibrium under feet. `coupling` and
     `margins` are those of the linear chain; energies of stretching links are not in the balance.
 
-    Raises InputError as `simulate` does; for hard contact, a raw contact line and an unresolved motion of the chain;
-    with two-way coupling for normal = "bilateral", stretching links, and a preload that depends on deflection.
+    Raises InputError as `simulate` does; for forces that grow and circuits; for hard contact, a raw contact line and an
+    unresolved motion of the chain; with two-way coupling for normal = "bilateral", stretching links, and a preload that
+    depends on deflection.
     """
     began = perf_counter()
     check_integer("count", count, 2)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
-    request = request_of(
-        beam, forces, frequency_hz, duration, model="segment", count=count, modes=None, start="rest",
-        soft_start_periods=0.0, envelope=(), modal_damping=None, slider=slider, prescribed_speed=prescribed_speed,
-        fixed_position=fixed_position, at=at, samples=samples, step=step, steps_per_period=steps_per_period,
-        continue_from=None,
-    )  # fmt: skip
+    request = request_of(beam, excitation, duration, count=count, slider=slider, start="rest", step=step, keep=keep)
+    _check(excitation, request, links)
+    system = build_system(
+        beam, count, request.forces, request.frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
+    )
+    basis = basis_of(beam, "segment", count, None, "spline")
+    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
+    notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
+    run = ChainRun.of(request, basis, stages, notes, sequence=is_sequence(slider))
+    up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
+    line = contact_line(straight_chain(system), up)
+    motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
+    statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
+    return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
+
+
+def _check(excitation: Excitation, request: Request, links: Links) -> None:
+    """Raise InputError for an excitation and sliders that the nonlinear chain does not have."""
+    for name in ("soft_start_periods", "envelope", "circuits"):
+        if value := getattr(excitation, name):
+            raise InputError(f"{name} = {shown(value)}: a nonlinear chain starts under sudden forces, leave it out")
     if not request.sliders:
         raise InputError("slider is missing: give one, or `verify.chain.motion.from_rest` for a chain alone")
     for one in request.sliders:
@@ -92,18 +105,6 @@ def slide_on_chain(
                 "slider.preload depends on the deflection, by preload_stiffness or a mirrored foot: the equilibrium of "
                 "a nonlinear chain is under constant loads, give coupling = 'one-way'"
             )
-    system = build_system(
-        beam, count, request.forces, frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
-    )
-    basis = basis_of(beam, "segment", count, None, "spline")
-    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
-    notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
-    run = ChainRun.of(request, basis, stages, notes, sequence=not isinstance(slider, Slider))
-    up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
-    line = contact_line(straight_chain(system), up)
-    motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
-    statistics = replace(motion.statistics, set_up_s=perf_counter() - began - motion.statistics.wall_s)
-    return replace(motion, model="chain", statistics=statistics, end=replace(motion.end, model="chain"))
 
 
 class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
@@ -113,32 +114,34 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
     line: Any = None  # contact line per unit transverse step of each link, (x, derivative) -> (N, len(x))
     tolerance: float = 1e-9
 
-    def _initial(self) -> tuple[Contacts, ComplexArray]:
-        contacts, z = super()._initial()
-        if contacts.normal_two_way:
-            rises = self._rises(self._rest(contacts))
+    def _initial(self) -> tuple[Assembly, ComplexArray]:
+        assembly, z = super()._initial()
+        if assembly.kind.normal_two_way:
+            rises = self._rises(self._rest(assembly))
             ground: Any = SimpleNamespace(
-                edges=self.stages[0].edges, columns=self.line, factors=lambda z, t: rises[None],
+                edges=self.stages[0].edges,
+                columns=self.line,
+                factors=lambda z, t: rises[None],
                 rates_at_start=lambda z: 0.0 * rises,
-            )  # fmt: skip
-            set_down(contacts, ground, z)
-        return contacts, z
+            )
+            set_down(assembly, ground, z)
+        return assembly, z
 
-    def _rest(self, contacts: Contacts) -> ChainState:
+    def _rest(self, assembly: Assembly) -> ChainState:
         """Equilibrium of the chain with the sliders."""
-        state, p = at_rest(self.system), contacts.points
-        if not contacts.normal_two_way:
+        state, p = at_rest(self.system), assembly.points
+        if not assembly.kind.normal_two_way:
             return state
 
         def surface(normal: Array, friction: Array) -> tuple[Array, Array]:
             nonlocal state
-            state = self._static(contacts, normal, friction, state)
+            state = self._static(assembly, normal, friction, state)
             rises = self._rises(state)
-            at = self._material(rises, contacts.start + p[:, lay.OFFSET], p[:, lay.LEVER])
+            at = self._material(rises, assembly.start + p["offset"], p["lever"])
             return rises @ self.line(at), rises @ self.line(at, 1)
 
         assert self.basis is not None
-        equilibrium(contacts, surface, compliance_of(self.basis, contacts))
+        equilibrium(assembly, surface, compliance_of(self.basis, assembly))
         return state
 
     def _material(self, rises: Array, x: Array, lever: Array) -> Array:
@@ -149,15 +152,15 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         """Transverse steps of the links, (N,), m."""
         return np.asarray(self.system.lengths * np.sin(np.cumsum(state.angles)))
 
-    def _static(self, contacts: Contacts, normal: Array, friction: Array, state: ChainState) -> ChainState:
+    def _static(self, assembly: Assembly, normal: Array, friction: Array, state: ChainState) -> ChainState:
         """Equilibrium of the chain under contact forces at its points, near a state.
 
         Dead loads at the far joints have the virtual power of the forces, as in `slider_kernels.load_joints`.
         """
-        system, p = self.system, contacts.points
-        x, lever = contacts.start + p[:, lay.OFFSET], p[:, lay.LEVER]
-        across = p[:, lay.WEIGHT] * p[:, lay.FACE] * p[:, lay.IMAGE] * normal
-        along = p[:, lay.WEIGHT] * friction
+        system, p = self.system, assembly.points
+        x, lever = assembly.start + p["offset"], p["lever"]
+        across = p["weight"] * p["face"] * p["image"] * normal
+        along = p["weight"] * friction
         for _ in range(PASSES):
             rises = self._rises(state)
             at = self._material(rises, x, lever)
@@ -176,74 +179,94 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
                 break
         return state
 
-    def _states(self, steps: Steps, contacts: Contacts, numbers: Array, progress: Progress) -> tuple[Array, float]:
+    def _states(self, steps: Steps, assembly: Assembly, numbers: Array, progress: Progress) -> tuple[Array, float]:
         """(states of the chain at half steps, with two-way coupling of the first step alone; step of the march, s)."""
         from verify.chain.rigid_links import begin
 
         system = self.system
-        if contacts.two_way:
+        if assembly.kind.two_way:
             states = np.zeros((3, 2 * system.n_links + 2))
-            states[0] = begin(system, self._rest(contacts), numbers)
+            states[0] = begin(system, self._rest(assembly), numbers)
             limit = min(RADIANS / max(highest_frequency(system)[0], 1e-12), 0.5 * step_limit(system))
             return states, float(0.5 * steps.dt / np.ceil(0.5 * steps.dt / limit))
         times = np.linspace(0.0, steps.duration, 2 * steps.n + 1)
         return from_rest(system, times, tolerance=self.tolerance, progress=progress).states, steps.dt
 
-    def _marched(
-        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
-    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
+    def _chain(self, stage: Stage, assembly: Assembly, progress: Progress) -> "Chain":
+        """The chain before the first step, in the arrays of its kernel."""
         from verify.chain import elastic_links, rigid_links
-        from verify.chain.runge_kutta import DORMAND_PRINCE
-        from verify.chain.slider_kernels import STALE, advance
+        from verify.chain.runge_kutta import DORMAND_PRINCE, State
+        from verify.chain.slider_kernels import STALE, Chain
 
-        (stage,), system, began = stages, self.system, thread_time()
-        steps, count, rigid, two_way = stage.steps, system.n_links, system.rigid, contacts.two_way
-        links, loads, numbers, scratch = rigid_links.flatten(system) if rigid else elastic_links.flatten(system)
-        if two_way:  # dead loads at the far joints
-            spare = np.zeros((count, 7))
-            spare[:, 0], spare[:, 6] = 0.5 * system.lengths, np.arange(count)
-            loads = np.concatenate([loads, spare])
-        states, substep = self._states(steps, contacts, numbers, progress)
-        n, points, columns, width = (states.shape[1] - 2 * rigid) // 2, len(contacts.points), 2 * count, states.shape[1]
-        tableau, run, first = DORMAND_PRINCE, Run(stages, contacts, self.request.points, False), states[0].copy()
+        system = self.system
+        model = (rigid_links if system.rigid else elastic_links).flatten(system)
+        if assembly.kind.two_way:  # dead loads at the far joints
+            spare = np.zeros((system.n_links, 7))
+            spare[:, 0], spare[:, 6] = 0.5 * system.lengths, np.arange(system.n_links)
+            model = model._replace(loads=np.concatenate([model.loads, spare]))
+        states, substep = self._states(stage.steps, assembly, model.numbers, progress)
+        columns, width, stages = 2 * system.n_links, states.shape[1], len(DORMAND_PRINCE.c)
         powers = self.line.c[::-1] * system.lengths[:, None] ** np.arange(4)[:, None, None]
-        places, codes = np.zeros((len(self.request.points), columns)), np.zeros(lay.CODES, dtype=np.int64)
+        control = np.array([0.0, 0.0, 0.0, np.pi, 0.0, 0.0, 0.0])
+        return Chain(
+            surface=Surface(
+                table=np.ascontiguousarray(np.moveaxis(powers, 0, 1)),
+                edges=system.nodes - assembly.start,
+                factors=np.zeros((4, 2, columns)),
+                polynomials=np.zeros((system.n_links, 2, 4)),
+                stamps=np.zeros(system.n_links, dtype=np.int64),
+            ),
+            limits=stage.edges[[0, -1]] - assembly.start,
+            load=float(max(one.normal_force for one in self.request.sliders)),
+            model=model,
+            tableau=DORMAND_PRINCE._replace(weights=np.zeros(0)),
+            march=State(
+                np.zeros(width), np.zeros((stages + 3, width)), np.zeros(2), control, np.zeros(3, dtype=np.int64)
+            ),
+            n=(width - 2 * system.rigid) // 2,
+            substep=substep,
+            states=states,
+            probe=np.zeros((2, width)),
+            ends=np.zeros(2),
+            forces=np.zeros((len(assembly.points), 2)),
+            marches=np.array([STALE + 1]),
+            before=assembly.copy().bodies,
+        )
+
+    def _marched(
+        self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress
+    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
+        from verify.chain.slider_kernels import advance
+
+        (stage,), system, began, two_way = stages, self.system, thread_time(), assembly.kind.two_way
+        steps, chain = stage.steps, self._chain(stage, assembly, progress)
+        first, n, count = chain.states[0].copy(), chain.n, system.n_links
+        run = Run(assembly, steps.n // steps.every, len(self.request.points))
+        places = np.zeros((len(self.request.points), 2 * count))
         places[:, :count] = self.line(self.request.points).T
-        codes[[lay.LAW, lay.TWO_WAY, lay.NORMAL_TWO_WAY, lay.FOLLOWING]] = (
-            contacts.law, two_way, contacts.normal_two_way, contacts.following,
-        )  # fmt: skip
-        arrays = (
-            steps.every, steps.dt, contacts.gravity, max(one.normal_force for one in self.request.sliders),
-            stage.edges[[0, -1]] - contacts.start, links, loads, numbers, scratch, tableau.a, tableau.c, n, substep,
-            np.zeros(0), np.zeros((len(tableau.c) + 3, width)), np.zeros(2), np.array([0.0, 0.0, 0.0, np.pi, 0, 0, 0]),
-            np.zeros(3, dtype=np.int64), np.zeros(width), np.zeros(2), states, np.zeros((2, width)), codes,
-            np.ascontiguousarray(np.moveaxis(powers, 0, 1)), system.nodes - contacts.start, contacts.sliders,
-            contacts.feet, contacts.points, contacts.contacts, contacts.indices, run.feet_of,
-            np.zeros((4, 2, columns)), np.zeros((count, 2, 4)), np.zeros(count, dtype=np.int64),
-            np.zeros((4, points, columns)), np.zeros(columns), run.couplings, run.spans, run.block,
-            contacts.sliders.copy(), contacts.feet.copy(), contacts.contacts.copy(), np.zeros((points, 2)),
-            np.array([STALE + 1]), places, run.samples, run.heights, run.pressures, run.deflections, run.events,
-            run.tally, run.sums, run.before, run.balance,
-        )  # fmt: skip
-        contacts.contacts[:, lay.WAS_DEPTH] = contacts.contacts[:, lay.DEPTH]
+        run.journal, response = run.journal._replace(places=places), response_of(assembly, 2 * count)
+        arguments = steps.every, steps.dt, assembly.kind, chain, assembly.bodies, response
+        assembly.contacts["depth_before"] = assembly.contacts["depth"]
+        advance(0, *arguments, run.journal)
         run.sample_first()
-        deflection = (places[:, :count] @ self._rises(self._rest(contacts)))[None]
+        deflection = (places[:, :count] @ self._rises(self._rest(assembly)))[None]
         run.set_up_s, began = thread_time() - began, thread_time()
-        reason, stopped, chunk = lay.DONE, END, MARCHED if two_way else CHUNK
-        while reason == lay.DONE and run.tally[lay.STEP] < steps.n:
-            reason = advance(min(chunk, steps.n - int(run.tally[lay.STEP])), *arrays)
-            progress(float(run.tally[lay.STEP]) / steps.n if two_way else 1.0)
-        run.n_steps, run.loop_s = int(run.tally[lay.STEP]), thread_time() - began
-        if reason == lay.NOT_FINITE:
-            stopped = "diverged"
-        elif reason == lay.OFF_PIECES:
-            x = contacts.start + run.positions()
-            stopped = stage.beyond(float(x.min()), float(x.max()))
+        reason, chunk = DONE, MARCHED if two_way else CHUNK
+        while reason == DONE and run.step < steps.n:
+            reason = advance(min(chunk, steps.n - run.step), *arguments, run.journal)
+            progress(run.step / steps.n if two_way else 1.0)
+        run.n_steps, run.loop_s = run.step, thread_time() - began
+        if reason == NOT_FINITE:
+            run.stopped = "diverged"
+        elif reason == OFF_PIECES:
+            x = assembly.start + run.positions()
+            run.stopped = stage.beyond(float(x.min()), float(x.max()))
         gains = (0.0, 0.0, 0.0)
-        if rigid:
-            ends = np.array([first, states[0 if two_way else 2 * run.n_steps]])
+        if system.rigid:
+            ends = np.array([first, chain.states[0 if two_way else 2 * run.n_steps]])
             angles, rates = (np.diff(part, prepend=0.0) for part in (ends[:, :n], ends[:, n : 2 * n]))
             (k0, k1), (e0, e1), _ = energies(system, np.zeros(2), angles, rates)
             gains = float(k1 - k0), float(e1 - e0), float(k0 + e0)
-            run.balance[[lay.LOST, lay.DRIVEN]] += ends[1, 2 * n :]
-        return run.recorded(z, steps.dt, stopped), deflection, gains, rigid
+            for name, gained in zip(("lost", "driven"), ends[1, 2 * n :], strict=True):
+                run.journal.balance[name] += gained
+        return run.recorded(z, steps.dt), deflection, gains, system.rigid

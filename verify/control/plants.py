@@ -9,10 +9,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
+from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.field import phasor, point_force
+from verify.linear.positions import Numbers
 from verify.motor.steady_state import MotorCase, crest_speed, steady_state
 from verify.problem.beam import PointForce
 
@@ -175,17 +177,26 @@ class BeamTick(NamedTuple):
 
 
 def beam_tick(
-    forces: tuple[PointForce, ...], omega: float, seconds: float, before: BeamTick | None = None, **settings: Any
+    forces: tuple[PointForce, ...],
+    omega: float,
+    seconds: float,
+    before: BeamTick | None = None,
+    *,
+    at: Numbers,
+    **settings: Any,
 ) -> BeamTick:
-    """A beam in time under forces at omega, rad/s, with continuous phase; `settings` as in `simulate`."""
+    """A beam in time under forces at omega, rad/s, with continuous phase; `at`: positions of the response, (p,), m.
+
+    `settings` as in `simulate`.
+    """
     from verify.travelling_wave import phasors
 
     hertz, begin, phase = omega / (2.0 * pi), *((before.run.end.time, before.phase) if before else (0.0, 0.0))
     turn = complex(np.exp(1j * (phase - omega * begin)))
-    run = simulate(
-        forces=[point_force(force.position, turn * phasor(force)) for force in forces], frequency_hz=hertz,
-        duration=seconds, samples=16 * round(seconds * hertz + 1.0), continue_from=before.run if before else None,
-        **settings,
-    )  # fmt: skip
+    excitation = Excitation([point_force(force.position, turn * phasor(force)) for force in forces], hertz)
+    keep = Keep(at=at, samples=16 * round(seconds * hertz + 1.0))
+    if before is not None:
+        settings["start"] = before.run
+    run = simulate(excitation=excitation, duration=seconds, keep=keep, **settings)
     last = run.times > run.times[-1] - 1.5 / hertz
     return BeamTick(run, phase + omega * seconds, phasors(run.times[last], run.deflection[last], hertz) / turn)

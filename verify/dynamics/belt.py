@@ -9,10 +9,21 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics import layout as lay
+from verify.contact.state import (
+    CONTACT,
+    COULOMB,
+    FOOT,
+    POINT,
+    PRESCRIBED,
+    SLIDER,
+    STICKS,
+    TANH,
+    Bodies,
+    Kind,
+)
 from verify.dynamics.excitation import Rows
 from verify.dynamics.linear_system import Stage, Steps
-from verify.dynamics.stepping import Contacts, Run, run_stages
+from verify.dynamics.stepping import Assembly, Run, run_stages
 from verify.errors import InputError
 from verify.problem.slider import GRAVITY
 from verify.validation import check_number
@@ -29,26 +40,23 @@ LEVER = 1e6
 
 def _contact(
     speed: float, mu: float, static: float, slope: float = 0.0, load: float = 1.0, force: float = 0.0, mass: float = inf
-) -> Contacts:
+) -> Assembly:
     """One contact point at x = 0; an infinite mass is a slider of prescribed speed that moves the surface."""
-    contact = Contacts(
+    sliders, points, contacts = np.zeros(1, SLIDER), np.zeros(1, POINT), np.zeros(1, CONTACT)
+    names = ["v", "inverse_mass", "mu", "mu_static", "steepness", "external_force"]
+    for name, value in zip(names, (speed, 1.0 / mass, mu, static, slope, force), strict=True):
+        sliders[name] = value
+    for name, value in zip(("face", "image", "weight", "load", "lever"), (1.0, 1.0, 1.0, load, LEVER), strict=True):
+        points[name] = value
+    points["law"] = TANH if slope else COULOMB
+    return Assembly(
         start=0.0,
-        sliders=np.zeros((1, lay.SLIDER)),
-        feet=np.zeros((0, lay.FOOT)),
-        points=np.zeros((1, lay.POINT)),
-        contacts=np.zeros((1, lay.CONTACT)),
-        indices=np.zeros((1, 3), dtype=np.int64),
-        law=lay.PRESCRIBED,
-        two_way=mass == inf,
-        normal_two_way=False,
+        bodies=Bodies(sliders, np.zeros(0, FOOT), points, contacts),
+        kind=Kind(PRESCRIBED, mass == inf, False, False, False, 0.0),
     )
-    columns = [lay.V, lay.INVERSE_MASS, lay.MU, lay.MU_STATIC, lay.STEEPNESS, lay.EXTERNAL_FORCE]
-    contact.sliders[0, columns] = speed, 1.0 / mass, mu, static, slope, force
-    contact.points[0, [lay.FACE, lay.IMAGE, lay.WEIGHT, lay.LOAD, lay.LEVER]] = 1.0, 1.0, 1.0, load, LEVER
-    return contact
 
 
-def _run(contact: Contacts, steps: int, dt: float, z: ComplexArray | None = None) -> Run:
+def _run(contact: Assembly, steps: int, dt: float, z: ComplexArray | None = None) -> Run:
     """March on a surface at rest, or on a unit mass on a unit spring with the state z = position - i speed."""
 
     def shapes(x: Array, derivative: int) -> Array:
@@ -72,7 +80,7 @@ def free_decay(mu: float, slope: float, speed: float, time: float, gravity: floa
     """Speed, m/s, of a slider with tanh friction after `time` on a surface at rest, from `speed`."""
     contact = _contact(speed, mu, mu, slope, gravity, mass=1.0)
     _run(contact, STEPS, time / STEPS)
-    return float(contact.sliders[0, lay.V])
+    return float(contact.sliders["v"][0])
 
 
 def creep_speed(mu: float, slope: float, acceleration: float, gravity: float = GRAVITY) -> float:
@@ -81,13 +89,13 @@ def creep_speed(mu: float, slope: float, acceleration: float, gravity: float = G
         raise InputError(f"acceleration = {acceleration!r} is not below mu g = {mu * gravity:.6g} m/s^2: lower it")
     contact, step = _contact(0.0, mu, mu, slope, gravity, acceleration, mass=1.0), 1.0 / (mu * gravity * slope)
     for _ in range(60):
-        before = float(contact.sliders[0, lay.V])
-        contact.sliders[0, lay.X] = 0.0
+        before = float(contact.sliders["v"][0])
+        contact.sliders["x"][0] = 0.0
         _run(contact, 100, step)
-        if abs(contact.sliders[0, lay.V] - before) <= 1e-15 * abs(before):
+        if abs(contact.sliders["v"][0] - before) <= 1e-15 * abs(before):
             break
         step *= 2.0
-    return float(contact.sliders[0, lay.V])
+    return float(contact.sliders["v"][0])
 
 
 def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:
@@ -102,15 +110,15 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / STEPS_PER_PERIOD
     contact = _contact(belt, kinetic / static, 1.0)
-    contact.sliders[0, lay.FREE] = 0.0
-    contact.contacts[0, [lay.STUCK, lay.FRICTION]] = 1.0, -1.0
+    contact.sliders["free"][0] = 0.0
+    contact.contacts["sticks"], contact.contacts["friction"] = 1.0, -1.0
     # every slip begins with the static force on a mass that moves with the belt, so that the first cycle is periodic
     steps, slip, position = STEPS_PER_PERIOD // 8, 0.0, 1.0
     z = np.array([position - 1j * belt])
     for _ in range(16):
         recorded = _run(contact, steps, step, z)
         z, elapsed = recorded.z, slip + steps * step
-        sticks = recorded.events[recorded.events[:, 1] == lay.STICKS, 0]
+        sticks = recorded.events[recorded.events[:, 1] == STICKS, 0]
         if len(sticks):
             slip += float(sticks[0])
             position = float(z[0].real) - belt * (elapsed - slip)  # at the start of sticking

@@ -4,9 +4,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from verify.arrays import Array
-from verify.dynamics import layout as lay
-from verify.dynamics.stepping import Contacts
+from verify.contact.state import (
+    BILATERAL,
+    CONTACT,
+    COULOMB,
+    ELASTIC,
+    FOOT,
+    POINT,
+    PRESCRIBED,
+    SLIDER,
+    SPRING,
+    TANH,
+    Bodies,
+    Kind,
+    Records,
+)
+from verify.dynamics.stepping import Assembly
 from verify.errors import InputError, written
 from verify.linear.positions import SLACK
 from verify.linear.surface import check_one_range, contact_range, section_at
@@ -21,107 +34,117 @@ def assemble(
     starts: Sequence[float],
     prescribed_speeds: Sequence[float | None],
     fixed: Sequence[bool],
-) -> Contacts:
+) -> Assembly:
     """Sliders without transverse motion, feet at height 0.
 
     A slider without `contact` is one bilateral point; its normal force is prescribed, or includes the reaction of its
     mass (two-way coupling with normal = "bilateral").
     """
-    two_way, first = sliders[0].coupling == "two-way", sliders[0]
-    half = section_at(beam, starts[0]).surface_distance
-    rows, sheets, feet, indices = [], list[Array](), list[list[float]](), list[tuple[int, int, int]]()
-    for number, (slider, start, speed, stays) in enumerate(zip(sliders, starts, prescribed_speeds, fixed, strict=True)):
-        row = np.zeros(lay.SLIDER)
-        row[lay.V] = slider.speed if speed is None else speed
-        row[lay.INVERSE_MASS] = 1.0 / slider.mass if speed is None else 0.0
-        row[lay.MU] = slider.mu
-        row[lay.MU_STATIC] = slider.mu if slider.mu_static is None else slider.mu_static
-        row[lay.STEEPNESS], row[lay.EXTERNAL_FORCE] = slider.steepness or 0.0, slider.external_force
-        row[lay.FREE] = 0.0 if stays else 1.0
-        rows.append(row)
-        for foot in slider.feet if slider.contact else (None,):
-            if foot is None:
-                sheet = np.zeros((1, lay.POINT))
-                sheet[0, [lay.FACE, lay.IMAGE, lay.WEIGHT]] = 1.0
-                sheet[0, [lay.LOAD, lay.INERTIA]] = slider.normal_force, slider.mass
-            else:
-                sheet = _foot_points(slider, foot)
-            sheet[:, lay.OFFSET] += start - starts[0]
-            sheet[:, lay.LEVER] = half * sheet[:, lay.FACE] * sheet[:, lay.IMAGE]
-            sheets.append(sheet)
-            indices += [(number, len(feet), 0)] * len(sheet)
-            feet += [] if foot is None else [_foot(slider, foot)]
-    bilateral = first.contact is None and first.normal == "bilateral" and two_way
-    points = np.concatenate(sheets)
-    return Contacts(
+    first = sliders[0]
+    bodies = [
+        _bodies(beam, slider, start - starts[0], speed, stays)
+        for slider, start, speed, stays in zip(sliders, starts, prescribed_speeds, fixed, strict=True)
+    ]
+    half, feet = section_at(beam, starts[0]).surface_distance, 0
+    for number, (_, own_feet, points) in enumerate(bodies):
+        points["slider"] = number
+        points["foot"] += feet
+        points["lever"] = half * points["face"] * points["image"]
+        feet += len(own_feet)
+    two_way, springs = first.coupling == "two-way", first.contact is not None
+    bilateral = not springs and first.normal == "bilateral" and two_way
+    rows, all_feet, points = (np.concatenate(arrays) for arrays in zip(*bodies, strict=True))
+    return Assembly(
         start=starts[0],
-        sliders=np.array(rows),
-        feet=np.array(feet).reshape(-1, lay.FOOT),
-        points=points,
-        contacts=np.zeros((len(points), lay.CONTACT)),
-        indices=np.array(indices, dtype=np.int64),
-        law=lay.SPRING if first.contact else lay.BILATERAL if bilateral else lay.PRESCRIBED,
-        two_way=two_way,
-        normal_two_way=two_way and (first.contact is not None or bilateral),
-        following=first.kinematics == "following",
-        gravity=first.gravity,
+        bodies=Bodies(rows, all_feet, points, np.zeros(len(points), CONTACT)),
+        kind=Kind(
+            normal_law=SPRING if springs else BILATERAL if bilateral else PRESCRIBED,
+            two_way=two_way,
+            normal_two_way=two_way and (springs or bilateral),
+            several=two_way and len(points) > 1,
+            following=first.kinematics == "following",
+            gravity=float(first.gravity),
+        ),
         moving_load=all(s.mu == 0.0 and v is not None for s, v in zip(sliders, prescribed_speeds, strict=True)),
         restitution=first.contact.restitution if first.contact and first.contact.hard else None,
     )
 
 
-def _foot_points(slider: Slider, foot: Foot) -> Array:
-    """Rows of contact points, (points, POINT); of a foot between two beams those below, then those above."""
+def _bodies(
+    beam: Beam, slider: Slider, offset: float, speed: float | None, fixed: bool
+) -> tuple[Records, Records, Records]:
+    """A slider `offset` from the first, its feet and points, of which the feet are numbered from 0."""
+    row = np.zeros(1, SLIDER)
+    row["v"], row["inverse_mass"] = (slider.speed, 1.0 / slider.mass) if speed is None else (speed, 0.0)
+    row["mu"], row["mu_static"] = slider.mu, slider.mu if slider.mu_static is None else slider.mu_static
+    row["steepness"], row["external_force"] = slider.steepness or 0.0, slider.external_force
+    row["free"] = 0.0 if fixed else 1.0
+    if slider.contact:
+        feet = np.concatenate([_foot(slider, foot) for foot in slider.feet])
+        sheets = [_foot_points(slider, foot) for foot in slider.feet]
+        points = np.concatenate(sheets)
+        points["foot"] = np.repeat(np.arange(len(sheets)), [len(sheet) for sheet in sheets])
+    else:
+        feet, points = np.zeros(0, FOOT), np.zeros(1, POINT)
+        points["face"], points["image"], points["weight"] = 1.0, 1.0, 1.0
+        points["load"], points["mass"] = slider.normal_force, slider.mass
+    points["offset"] += offset
+    rigid = COULOMB if slider.steepness is None else TANH
+    points["law"] = np.where(points["tangential_stiffness"] > 0.0, ELASTIC, rigid)
+    return row, feet, points
+
+
+def _foot_points(slider: Slider, foot: Foot) -> Records:
+    """Contact points of a foot; of a foot between two beams those below, then those above."""
     contact = slider.contact
     assert contact is not None
-    normal, sheet = contact.across(foot.length), np.zeros((foot.points, lay.POINT))
-    sheet[:, lay.ARM] = foot.length * ((np.arange(foot.points) + 0.5) / foot.points - 0.5)
-    sheet[:, lay.OFFSET] = foot.offset + sheet[:, lay.ARM]
-    sheet[:, lay.STIFF], sheet[:, lay.DASHPOT] = normal / foot.points, contact.damping / foot.points
-    sheet[:, lay.TANGENTIAL] = contact.along(foot.length) / foot.points
-    sheet[:, lay.FACE], sheet[:, lay.IMAGE] = -1.0 if foot.face == "lower" else 1.0, 1.0
-    sheet[:, lay.WEIGHT] = 1.0
+    normal, points = contact.across(foot.length), np.zeros(foot.points, POINT)
+    points["arm"] = foot.length * ((np.arange(foot.points) + 0.5) / foot.points - 0.5)
+    points["offset"] = foot.offset + points["arm"]
+    points["stiffness"], points["dashpot"] = normal / foot.points, contact.damping / foot.points
+    points["tangential_stiffness"] = contact.along(foot.length) / foot.points
+    points["face"], points["image"], points["weight"] = -1.0 if foot.face == "lower" else 1.0, 1.0, 1.0
     if not foot.mirrored:
-        return sheet
-    sheet[:, lay.WEIGHT] = 0.5
+        return points
+    points["weight"] = 0.5
     if normal:
-        sheet[:, lay.INSET] = slider.preload / len(slider.feet) / normal
-    above = sheet.copy()
-    above[:, [lay.FACE, lay.IMAGE]] = -1.0
-    return np.concatenate([sheet, above])
+        points["inset"] = slider.preload / len(slider.feet) / normal
+    above = points.copy()
+    above["face"], above["image"] = -1.0, -1.0
+    return np.concatenate([points, above])
 
 
-def _foot(slider: Slider, foot: Foot) -> list[float]:
-    """One row of `Contacts.feet`, at height 0 and at rest."""
-    mass, row = slider.moving_mass(foot), [0.0] * lay.FOOT
+def _foot(slider: Slider, foot: Foot) -> Records:
+    """A foot at height 0 and at rest, (1,)."""
+    mass, row = slider.moving_mass(foot), np.zeros(1, FOOT)
     inertia = mass * foot.length**2 / 12.0 if foot.inertia is None else foot.inertia
     preload = slider.preload / len(slider.feet)
     force = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload
-    row[lay.INVERSE_FOOT_MASS] = 1.0 / mass
-    row[lay.INVERSE_INERTIA] = 1.0 / inertia if foot.pitches and foot.points > 1 else 0.0
-    row[lay.FOOT_LOAD] = force - slider.mass * slider.gravity / len(slider.feet)
-    row[lay.SPRING_RATE] = slider.preload_stiffness
+    row["inverse_mass"] = 1.0 / mass
+    row["inverse_inertia"] = 1.0 / inertia if foot.pitches and foot.points > 1 else 0.0
+    row["load"] = force - slider.mass * slider.gravity / len(slider.feet)
+    row["spring_rate"] = slider.preload_stiffness
     return row
 
 
-def contact_rate(contacts: Contacts, sliders: Sequence[Slider], basis: TimeBasis | None) -> float:
+def contact_rate(assembly: Assembly, sliders: Sequence[Slider], basis: TimeBasis | None) -> float:
     """Upper bound of the natural frequency of spring contact with all points in contact, rad/s; else 0.
 
     With two-way coupling it includes the compliance of the beam's modes. A dashpot contributes half its rate, which
     has the same stable step.
     """
-    if contacts.law != lay.SPRING or contacts.restitution is not None:
+    if not assembly.springs:
         return 0.0
-    p, slider, foot = contacts.points, contacts.indices[:, lay.OF_SLIDER], contacts.indices[:, lay.OF_FOOT]
-    feet, along = contacts.feet[foot], np.array([1.0 / one.mass for one in sliders])[slider]
-    mobility = feet[:, lay.INVERSE_FOOT_MASS] + p[:, lay.ARM] ** 2 * feet[:, lay.INVERSE_INERTIA]
+    p, slider, foot = assembly.points, assembly.points["slider"], assembly.points["foot"]
+    feet, along = assembly.feet[foot], np.array([1.0 / one.mass for one in sliders])[slider]
+    mobility = feet["inverse_mass"] + p["arm"] ** 2 * feet["inverse_inertia"]
     if basis is not None:
-        places = contacts.start + p[:, lay.OFFSET]
+        places = assembly.start + p["offset"]
         mobility = mobility + (basis.shapes(places, 0) ** 2).sum(axis=0)
-        along = along + p[:, lay.LEVER] ** 2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
-    normal = np.bincount(foot, p[:, lay.STIFF] * mobility)
-    damped = np.bincount(foot, p[:, lay.DASHPOT] * mobility)
-    tangential = np.bincount(slider, p[:, lay.TANGENTIAL] * along)
+        along = along + p["lever"] ** 2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
+    normal = np.bincount(foot, p["stiffness"] * mobility)
+    damped = np.bincount(foot, p["dashpot"] * mobility)
+    tangential = np.bincount(slider, p["tangential_stiffness"] * along)
     return float(max(np.sqrt(normal.max()), damped.max(), np.sqrt(tangential.max())))
 
 

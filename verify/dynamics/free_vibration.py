@@ -60,7 +60,7 @@ class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     truncation: float
     """Truncation error of the initial shape, rms over rms (weighted by mass and rotary inertia); 0 without a shape."""
     end: EndState
-    """State from which `simulate` continues (`continue_from`)."""
+    """State from which `simulate` continues (`start`)."""
     notes: tuple[str, ...]
     """Method of the modes; corners of the initial shape."""
 

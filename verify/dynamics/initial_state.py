@@ -5,10 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from verify.arrays import Array, BoolArray, ComplexArray
-from verify.dynamics import layout as lay
 from verify.dynamics.excitation import RESONANCE
 from verify.dynamics.linear_system import Stage
-from verify.dynamics.stepping import Contacts
+from verify.dynamics.stepping import Assembly
 from verify.errors import InputError
 from verify.linear.time_basis import Ratio, TimeBasis
 
@@ -19,7 +18,7 @@ SETTLED = 1e-14
 """Change of the surface, over its largest displacement, at which an equilibrium is at its rounding."""
 
 
-def equilibrium(contacts: Contacts, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:
+def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:
     """Bring sliders and surface to static equilibrium, in which the points of a foot carry it without a moment.
 
     `surface` gives (level, slope) of the material under every point, (points,), m, under normal forces and friction;
@@ -27,66 +26,66 @@ def equilibrium(contacts: Contacts, surface: Callable[[Array, Array], tuple[Arra
     Springs press but do not pull. Sets the pitches of the feet; returns the depth, (feet,), m, that a foot between two
     beams gains by its preload. Raises InputError for a foot without load.
     """
-    p = contacts.points
-    normal, place = _shares(contacts), np.zeros((len(contacts.feet), 3))
+    p = assembly.points
+    normal, place = _shares(assembly), np.zeros((len(assembly.feet), 3))
     friction, level = 0.0 * normal, np.full(len(normal), np.inf)
-    between = _between(contacts)
-    moves = np.transpose([~between, ~between & (contacts.feet[:, lay.INVERSE_INERTIA] > 0.0), between])
+    between = _between(assembly)
+    moves = np.transpose([~between, ~between & (assembly.feet["inverse_inertia"] > 0.0), between])
     for _ in range(PASSES):
         before, (level, slope) = level, surface(normal, friction)
-        friction = _holding(contacts, normal, slope)
-        if len(contacts.feet):
-            depth = p[:, lay.INSET] + p[:, lay.FACE] * p[:, lay.IMAGE] * level
-            normal, place = _carried(contacts, depth + compliance @ normal, compliance, moves)
-            contacts.feet[:, lay.PITCH] = place[:, 1]
+        friction = _holding(assembly, normal, slope)
+        if len(assembly.feet):
+            depth = p["inset"] + p["face"] * p["image"] * level
+            normal, place = _carried(assembly, depth + compliance @ normal, compliance, moves)
+            assembly.feet["pitch"] = place[:, 1]
         if abs(level - before).max() <= SETTLED * abs(level).max():
             break
     return np.asarray(place[:, 2])
 
 
-def _shares(contacts: Contacts) -> Array:
+def _shares(assembly: Assembly) -> Array:
     """Load of every point, N, where the points of a foot share its load equally."""
-    if not len(contacts.feet):
-        return np.array(contacts.points[:, lay.LOAD])
-    p, foot = contacts.points, contacts.indices[:, lay.OF_FOOT]
-    preload = np.bincount(foot, p[:, lay.INSET] * p[:, lay.STIFF])  # between two beams
-    return np.asarray(((abs(contacts.feet[:, lay.FOOT_LOAD]) + preload) / np.bincount(foot))[foot])
+    if not len(assembly.feet):
+        return np.array(assembly.points["load"])
+    p, foot = assembly.points, assembly.points["foot"]
+    preload = np.bincount(foot, p["inset"] * p["stiffness"])  # between two beams
+    return np.asarray(((abs(assembly.feet["load"]) + preload) / np.bincount(foot))[foot])
 
 
-def _between(contacts: Contacts) -> BoolArray:
+def _between(assembly: Assembly) -> BoolArray:
     """Which feet are between two beams that respond, (feet,): by symmetry they stay in the middle."""
-    foot, weights = contacts.indices[:, lay.OF_FOOT], contacts.points[:, lay.WEIGHT]
-    halved = np.bincount(foot, weights < 1.0, len(contacts.feet))[: len(contacts.feet)] > 0.0
-    return np.asarray(halved & contacts.normal_two_way)
+    foot, weights = assembly.points["foot"], assembly.points["weight"]
+    halved = np.bincount(foot, weights < 1.0, len(assembly.feet))[: len(assembly.feet)] > 0.0
+    return np.asarray(halved & assembly.kind.normal_two_way)
 
 
-def _holding(contacts: Contacts, normal: Array, slope: Array) -> Array:
+def _holding(assembly: Assembly, normal: Array, slope: Array) -> Array:
     """Coulomb friction on sliders at rest, N: what holds them, or kinetic beyond the static limit; else none."""
-    slider = contacts.indices[:, lay.OF_SLIDER]
-    rows, total = contacts.sliders, np.bincount(slider, normal)
-    pull = rows[:, lay.EXTERNAL_FORCE].copy()
-    if contacts.following:
-        downhill = contacts.gravity * contacts.points[:, lay.INERTIA] * slope
+    slider = assembly.points["slider"]
+    rows, total = assembly.sliders, np.bincount(slider, normal)
+    pull = rows["external_force"].copy()
+    if assembly.kind.following:
+        downhill = assembly.kind.gravity * assembly.points["mass"] * slope
         pull -= np.bincount(slider, downhill)
-    pull[(rows[:, lay.INVERSE_MASS] == 0.0) | (rows[:, lay.V] != 0.0) | (rows[:, lay.STEEPNESS] > 0.0)] = 0.0
-    static, kinetic = rows[:, lay.MU_STATIC] * total, rows[:, lay.MU] * total
+    pull[(rows["inverse_mass"] == 0.0) | (rows["v"] != 0.0) | (rows["steepness"] > 0.0)] = 0.0
+    static, kinetic = rows["mu_static"] * total, rows["mu"] * total
     held = np.where(abs(pull) <= static, pull, np.clip(pull, -kinetic, kinetic))
     return np.asarray(-(held / np.where(total > 0.0, total, 1.0))[slider] * normal)
 
 
-def _carried(contacts: Contacts, depth: Array, compliance: Array, moves: Array) -> tuple[Array, Array]:
+def _carried(assembly: Assembly, depth: Array, compliance: Array, moves: Array) -> tuple[Array, Array]:
     """(normal forces, places of the feet) on a linear surface that is at `depth` without them and feet at height 0.
 
     The depth of a point is depth - compliance N - B y with the places y of the feet, and N/k in contact; B^T N are the
     loads of the feet. `moves` (feet, 3) are the coordinates of the places that balance their loads. The set of points
     in contact is corrected until no point pulls and none without force is deep.
     """
-    p, feet, foot = contacts.points, contacts.feet, contacts.indices[:, lay.OF_FOOT]
+    p, feet, foot = assembly.points, assembly.feet, assembly.points["foot"]
     n, m = len(p), len(feet)
     by_place, loads, springs = np.zeros((n, m, 3)), np.zeros((m, 3)), np.zeros((m, 3))
-    by_place[np.arange(n), foot] = np.transpose([p[:, lay.FACE], p[:, lay.FACE] * p[:, lay.ARM], -np.ones(n)])
-    loads[:, 0], springs[:, 0] = -feet[:, lay.FOOT_LOAD], feet[:, lay.SPRING_RATE]
-    loads[:, 2] = -np.bincount(foot, p[:, lay.INSET] * p[:, lay.STIFF])
+    by_place[np.arange(n), foot] = np.transpose([p["face"], p["face"] * p["arm"], -np.ones(n)])
+    loads[:, 0], springs[:, 0] = -feet["load"], feet["spring_rate"]
+    loads[:, 2] = -np.bincount(foot, p["inset"] * p["stiffness"])
     moved = moves.ravel()
     b, load, rate = by_place.reshape(n, -1)[:, moved], loads.ravel()[moved], springs.ravel()[moved]
     touching, normal, place = np.ones(n, dtype=bool), np.zeros(n), np.zeros(3 * m)
@@ -94,7 +93,7 @@ def _carried(contacts: Contacts, depth: Array, compliance: Array, moves: Array) 
         if (np.bincount(foot, touching) == 0.0).any():
             number = int(np.bincount(foot, touching).argmin()) + 1
             raise InputError(f"slider.preload leaves foot {number} without load or off the beam: raise it")
-        inner = np.diag(1.0 / p[:, lay.STIFF]) + compliance
+        inner = np.diag(1.0 / p["stiffness"]) + compliance
         inner, sides = inner[np.ix_(touching, touching)], b[touching]
         matrix = np.block([[inner, sides], [sides.T, -np.diag(rate)]])
         # a foot on a single point may have any pitch: the least is taken
@@ -109,7 +108,7 @@ def _carried(contacts: Contacts, depth: Array, compliance: Array, moves: Array) 
 
 
 def static_deflection(
-    basis: TimeBasis, contacts: Contacts, released: Callable[[Array, float], Array], dt: float
+    basis: TimeBasis, assembly: Assembly, released: Callable[[Array, float], Array], dt: float
 ) -> tuple[Array, Array]:
     """Static equilibrium under the sliders: modal amplitudes, (n,), sqrt(kg) m, and a rise of points, (points,), m.
 
@@ -119,10 +118,10 @@ def static_deflection(
     after a time without them. The equilibrium is one of steps of dt with the rise of the surface that this makes; for
     points without feet dt is 0. Sets the speed along that the contact forces of a step before would have cancelled.
     """
-    p, x = contacts.points, contacts.start + contacts.points[:, lay.OFFSET]
-    side, lever, slopes = p[:, lay.WEIGHT], p[:, lay.LEVER], basis.shapes(x, 1)
-    if len(contacts.feet):
-        side = side * p[:, lay.FACE] * p[:, lay.IMAGE]
+    p, x = assembly.points, assembly.start + assembly.points["offset"]
+    side, lever, slopes = p["weight"], p["lever"], basis.shapes(x, 1)
+    if len(assembly.feet):
+        side = side * p["face"] * p["image"]
 
     def shapes(q: Array) -> tuple[Array, Array, Array]:
         """Generalised displacements of all points, normal and tangential, (n, points), and slopes, (points,)."""
@@ -140,31 +139,31 @@ def static_deflection(
     def surface(normal: Array, friction: Array) -> tuple[Array, Array]:
         nonlocal q
         across, along, slope = shapes(released(q, 0.5 * dt))
-        q = -(across @ (side * normal) + along @ (p[:, lay.WEIGHT] * friction)) / basis.omegas**2
+        q = -(across @ (side * normal) + along @ (p["weight"] * friction)) / basis.omegas**2
         return level(released(q, 0.5 * dt)), slope
 
-    gained = equilibrium(contacts, surface, compliance_of(basis, contacts))
-    if len(contacts.feet):
-        p[:, lay.INSET] += gained[contacts.indices[:, lay.OF_FOOT]]
+    gained = equilibrium(assembly, surface, compliance_of(basis, assembly))
+    if len(assembly.feet):
+        p["inset"] += gained[assembly.points["foot"]]
     if dt > 0.0:
-        contacts.contacts[:, lay.BEFORE] = (q - released(q, dt)) / dt @ shapes(released(q, 0.5 * dt))[1]
+        assembly.contacts["surface_before"] = (q - released(q, dt)) / dt @ shapes(released(q, 0.5 * dt))[1]
     return q, level(released(q, 0.5 * dt)) - level(q)
 
 
-def compliance_of(basis: TimeBasis, contacts: Contacts) -> Array:
+def compliance_of(basis: TimeBasis, assembly: Assembly) -> Array:
     """Decrease of the depth of every point by unit normal forces on a straight beam, (points, points), m/N."""
-    p = contacts.points
-    shapes = basis.shapes(contacts.start + p[:, lay.OFFSET], 0) * p[:, lay.FACE] * p[:, lay.IMAGE]
-    return np.asarray((shapes.T / basis.omegas**2) @ (shapes * p[:, lay.WEIGHT]))
+    p = assembly.points
+    shapes = basis.shapes(assembly.start + p["offset"], 0) * p["face"] * p["image"]
+    return np.asarray((shapes.T / basis.omegas**2) @ (shapes * p["weight"]))
 
 
-def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping: Ratio) -> ComplexArray:
+def steady_with_mass(basis: TimeBasis, stage: Stage, assembly: Assembly, damping: Ratio) -> ComplexArray:
     """Modal response z to bilateral masses on a steady beam, at time 0 of the stage, (n,).
 
     W = W_0 + G m omega^2 W at all points: a mass exerts the force m omega^2 W. Raises InputError at a resonance.
     """
-    omega, x = stage.omega, contacts.start + contacts.points[:, lay.OFFSET]
-    shapes, mass = basis.shapes(x, 0), contacts.points[:, lay.INERTIA]
+    omega, x = stage.omega, assembly.start + assembly.points["offset"]
+    shapes, mass = basis.shapes(x, 0), assembly.points["mass"]
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
     loop = np.eye(len(x)) - omega**2 * (shapes.T * compliance) @ shapes * mass
     if np.linalg.svd(loop, compute_uv=False).min() < RESONANCE:
@@ -174,39 +173,39 @@ def steady_with_mass(basis: TimeBasis, stage: Stage, contacts: Contacts, damping
     return stage.rows.of_state(phasors.real, (1j * omega * phasors).real)
 
 
-def set_down(contacts: Contacts, stage: Stage, z: ComplexArray, rise_of_step: Array | float = 0.0) -> None:
+def set_down(assembly: Assembly, stage: Stage, z: ComplexArray, rise_of_step: Array | float = 0.0) -> None:
     """Set sliders in equilibrium on the surface of free rows z: places of feet, depths, friction, normal velocities.
 
     `rise_of_step` is that of `static_deflection`. Raises InputError for a foot without load.
     """
-    p, state, x = contacts.points, contacts.contacts, contacts.start + contacts.points[:, lay.OFFSET]
-    lever, factors, rates = p[:, lay.LEVER], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
+    p, state, x = assembly.points, assembly.contacts, assembly.start + assembly.points["offset"]
+    lever, factors, rates = p["lever"], stage.factors(z[None], np.zeros(1))[0], stage.rates_at_start(z)
     at = np.clip(x + lever * (factors @ stage.columns(x, 1)), 0.0, stage.edges[-1])  # the material under a point
     columns = [stage.columns(at, derivative) for derivative in range(3)]
     (level, slope, bend), (rise, turn) = (factors @ one for one in columns), (rates @ one for one in columns[:2])
-    along = contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.V]
-    along = along - slope * rise if contacts.following else along
-    along = along * contacts.sliders[contacts.indices[:, lay.OF_SLIDER], lay.FREE]
+    along = assembly.sliders["v"][assembly.points["slider"]]
+    along = along - slope * rise if assembly.kind.following else along
+    along = along * assembly.sliders["free"][assembly.points["slider"]]
     climb = rise + slope * (along + lever * (turn + bend * along))  # dw/dt + w' dX/dt, X = x + (h/2) w'
-    foot = contacts.indices[:, lay.OF_FOOT]
-    if contacts.restitution is not None:  # a rigid point moves with the surface from the start
-        contacts.feet[:, lay.HEIGHT], contacts.feet[:, lay.VELOCITY_Z] = level, climb
+    foot = assembly.points["foot"]
+    if assembly.restitution is not None:  # a rigid point moves with the surface from the start
+        assembly.feet["height"], assembly.feet["velocity_z"] = level, climb
         return
-    if not len(contacts.feet):
-        state[:, lay.POINT_VZ] = climb
-        normal = p[:, lay.LOAD]
+    if not len(assembly.feet):
+        state["point_vz"] = climb
+        normal = p["load"]
     else:
-        level = p[:, lay.IMAGE] * (level + rise_of_step) - p[:, lay.ARM] * contacts.feet[foot, lay.PITCH]
-        depth = p[:, lay.INSET] + p[:, lay.FACE] * level
-        moves = np.zeros((len(contacts.feet), 3), dtype=bool)
-        moves[:, 0] = ~_between(contacts)
-        normal, place = _carried(contacts, depth, np.zeros((len(p), len(p))), moves)
-        contacts.feet[:, lay.HEIGHT] = place[:, 0]
-        state[:, lay.DEPTH] = depth - p[:, lay.FACE] * contacts.feet[foot, lay.HEIGHT]
-    contacts.at_rest = True
-    state[:, lay.FRICTION] = _holding(contacts, normal, slope)
-    slider = contacts.sliders[contacts.indices[:, lay.OF_SLIDER]]
-    above = abs(state[:, lay.FRICTION]) > slider[:, lay.MU] * normal * (1.0 + 1e-12)  # only a point that sticks has it
-    state[above & (slider[:, lay.STEEPNESS] == 0.0), lay.STUCK] = 1.0
-    elastic = p[:, lay.TANGENTIAL] > 0.0
-    state[elastic, lay.STRETCH] = state[elastic, lay.FRICTION] / p[elastic, lay.TANGENTIAL]
+        level = p["image"] * (level + rise_of_step) - p["arm"] * assembly.feet["pitch"][foot]
+        depth = p["inset"] + p["face"] * level
+        moves = np.zeros((len(assembly.feet), 3), dtype=bool)
+        moves[:, 0] = ~_between(assembly)
+        normal, place = _carried(assembly, depth, np.zeros((len(p), len(p))), moves)
+        assembly.feet["height"] = place[:, 0]
+        state["depth"] = depth - p["face"] * assembly.feet["height"][foot]
+    assembly.at_rest = True
+    state["friction"] = _holding(assembly, normal, slope)
+    slider = assembly.sliders[assembly.points["slider"]]
+    above = abs(state["friction"]) > slider["mu"] * normal * (1.0 + 1e-12)  # only a point that sticks has it
+    state["sticks"][above & (slider["steepness"] == 0.0)] = 1.0
+    elastic = p["tangential_stiffness"] > 0.0
+    state["stretch"][elastic] = state["friction"][elastic] / p["tangential_stiffness"][elastic]

@@ -10,11 +10,13 @@ from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
+from verify.dynamics.arguments import SHORTEST, Excitation, Keep, Sliders, Step, sliders_of, step_of
 from verify.dynamics.circuits import check_circuits
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, SMOOTH_STEP, check_damping
+from verify.dynamics.excitation import CONSTANT, check_damping
+from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Growth, Stage, cut
-from verify.dynamics.result import EndState
+from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
 from verify.linear.positions import loads_on, vector_on
@@ -22,23 +24,20 @@ from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointLoad, check_frequency
 from verify.problem.slider import GRAVITY, Slider
-from verify.validation import as_tuple, check_integer, check_number, check_type, check_unmasked, python_scalar
+from verify.validation import as_tuple, check_number, check_type
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 """Least number of time steps per drive period. For feet it is prime, so that equally spaced points on a wave do not
 all reverse their friction in the same steps."""
 FEET_MODES = 80
 """Default number of modes of the exact beam under feet."""
-SHORTEST = 1e-100
-"""Least duration, s, and least growth in periods (a shorter growth is a step): squares do not underflow."""
 COARSEST = 0.25
 """Largest step of a slider in drive periods."""
 MOST_PERIODS = 1e12
 """Number of drive periods after which rounding of the phase is 1e-3 rad."""
 MOST_STEPS = 2e9
-MOST_SAMPLES = 10_000_000
-Envelope = Sequence[tuple[float, Sequence[float]]]
-"""Envelope of the forces: pieces (seconds, coefficients of ascending powers of t / seconds)."""
+KEEP = Keep()
+"""Recorded output by default: no deflection, 201 times."""
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -126,115 +125,125 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         before, sizes = self.before, stage.rows.sizes
         assert before is not None
         if (n := len(before.q)) not in sizes:
-            raise InputError(f"continue_from has {n} modes and this run {sizes[0]}: give both the same modes")
+            raise InputError(f"start has {n} modes and this run {sizes[0]}: give both the same modes")
         return stage.rows.of_state(before.q, before.rates)
 
 
 def request_of(
-    beam: Beam, forces: Any, frequency_hz: float, duration: float, *, model: str, count: int | None, modes: int | None,
-    start: str | None, soft_start_periods: float, envelope: Envelope, modal_damping: float | None, slider: Any,
-    prescribed_speed: Any, fixed_position: Any, at: Any, samples: int, step: float | None,
-    steps_per_period: int | None, continue_from: Any, circuits: Any = (),
-) -> Request:  # fmt: skip
+    beam: Beam,
+    excitation: Excitation,
+    duration: float,
+    *,
+    slider: Sliders | None,
+    model: str = "segment",
+    count: int | None = None,
+    modes: int | None = None,
+    modal_damping: float | None = None,
+    start: str | Motion | FreeVibration | None = None,
+    step: Step | float | None = None,
+    keep: Keep = KEEP,
+) -> Request:
     """A validated request; arguments as in `simulate`. Raises InputError."""
-    check_frequency("frequency_hz", frequency_hz, beam)
+    if not isinstance(excitation, Excitation):
+        raise InputError(f"excitation = {shown(excitation)}: give an Excitation(forces, frequency_hz)")
+    check_type("keep", keep, Keep)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
-    check_integer("samples", samples, 2, MOST_SAMPLES)
     check_damping(beam, modal_damping)
-    kind, sliders = MODELS.named(model), () if slider is None else as_tuple("slider", slider, Slider)
-    driven, electrical = loads_on(beam, forces, PointLoad), as_tuple("circuits", circuits, Mounted)
-    check_circuits(beam, electrical, 2.0 * np.pi * frequency_hz)
-    if not driven and not sliders and not electrical:
-        raise InputError("forces is empty: give at least one PointForce")
-    feet, two_way = (bool(sliders) and sliders[0].contact is not None), (sliders and sliders[0].coupling == "two-way")
-    start = ("steady" if feet else "rest") if start is None else start
-    if start not in ("rest", "steady"):
-        raise InputError(f"start = {start!r} is not known: known are rest, steady")
-    if sliders and sliders[0].line == "raw" and ("raw" not in kind.lines or start == "steady"):
-        raise InputError("slider.line = 'raw': this model and start have no straight edges of links, leave it out")
-    if modes is not None and start == "steady" and not two_way:
-        raise InputError(f"modes = {modes!r}: a steady field without two-way coupling uses no modes, leave it out")
-    before = _before(continue_from, beam, model, count, start, sliders)
-    if frequency_hz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
+    kind, given, hertz = MODELS.named(model), sliders_of(slider), excitation.frequency_hz
+    sliders = tuple(one.slider for one in given)
+    forces, circuits = _loads(beam, excitation, sliders)
+    feet = bool(sliders) and sliders[0].contact is not None
+    begins, before = _start(start, feet)
+    _check_start(begins, before, excitation, sliders, edges="raw" in kind.lines, modes=modes)
+    if before is not None:
+        _check_continued(before, beam, model, count, sliders)
+    if hertz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
         raise InputError(f"duration = {duration!r} s: rounding makes the phase unknown after 1e12 periods, shorten it")
-    replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
-    own = before.starts if before and before.contact is not None and sliders else ()
-    starts = own or tuple(one.initial_position(beam) for one in sliders)
+    starts = before.starts if before and before.contact is not None and sliders else ()
+    starts = starts or tuple(one.initial_position(beam) for one in sliders)
     if sliders:
         check_sliders(beam, sliders, starts)
-    speeds = _each("prescribed_speed", prescribed_speed, len(sliders))
-    fixed = tuple(python_scalar(one) for one in _each("fixed_position", fixed_position, len(sliders)))
-    for speed, one in zip(speeds, fixed, strict=True):
-        check_number("prescribed_speed", 0.0 if speed is None else speed, "m/s")
-        check_type("fixed_position", one, bool)
-    grown = _growth(soft_start_periods, envelope, frequency_hz, start == "steady" or before is not None)
-    longest = _longest_step(frequency_hz, duration, step, steps_per_period, sliders)
+    step = step_of(step)
+    longest = _longest_step(hertz, duration, step, sliders)
+    replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
     return Request(
         beam=beam,
-        forces=driven,
-        frequency_hz=frequency_hz,
+        forces=forces,
+        frequency_hz=hertz,
         model=model,
         count=count,
         modes=FEET_MODES if modes is None and feet and not kind.sized else modes,
-        start=start,
+        start=begins,
         modal_damping=modal_damping if replaced else None,
         sliders=sliders,
         starts=starts,
-        prescribed_speeds=speeds,
-        fixed=fixed,
-        points=vector_on("at", at, beam.length),
-        pieces=_cut(duration, grown, longest, samples - 1),
-        step=step,
+        prescribed_speeds=tuple(one.speed for one in given),
+        fixed=tuple(one.fixed_position for one in given),
+        points=vector_on("keep.at", keep.at, beam.length),
+        pieces=_cut(duration, excitation.growth, longest, keep.samples - 1),
+        step=step.seconds,
         before=before,
-        circuits=electrical,
+        circuits=circuits,
     )
 
 
-def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
-    """One value for each slider. Raises InputError."""
-    row = given.tolist() if getattr(given, "shape", ()) else given
-    values = tuple(row) if isinstance(row, Sequence) else (row,) * n
-    if len(values) != n:
-        raise InputError(f"{field} has {len(values)} values for {n} sliders: give one per slider, or one for all")
-    return values
+def _loads(
+    beam: Beam, excitation: Excitation, sliders: tuple[Slider, ...]
+) -> tuple[tuple[PointLoad, ...], tuple[Mounted, ...]]:
+    """Forces and circuits on a beam. Raises InputError, also for nothing that moves the beam."""
+    check_frequency("frequency_hz", excitation.frequency_hz, beam)
+    forces, circuits = loads_on(beam, excitation.forces, PointLoad), as_tuple("circuits", excitation.circuits, Mounted)
+    check_circuits(beam, circuits, 2.0 * np.pi * excitation.frequency_hz)
+    if not forces and not sliders and not circuits:
+        raise InputError("forces is empty: give at least one PointForce")
+    return forces, circuits
 
 
-def _growth(soft: float, envelope: Envelope, frequency_hz: float, moves: bool) -> list[tuple[float, Array]]:
-    """Pieces (seconds, coefficients) of the growth of the forces. Raises InputError."""
-    check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
-    check_unmasked("envelope", envelope)
-    try:
-        pieces = [(float(seconds), np.asarray(c, dtype=float)) for seconds, c in envelope]
-        good = all(0.0 < s < inf and c.ndim == 1 and len(c) and np.isfinite(c).all() for s, c in pieces)
-    except (TypeError, ValueError):
-        pieces, good = [], False
-    if not good:
-        raise InputError(f"envelope = {shown(envelope)}: give pieces (seconds above 0, finite coefficients)")
-    if soft and pieces:
-        raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
-    if (soft or pieces) and moves:
-        given = f"soft_start_periods = {soft!r}" if soft else f"envelope = {shown(envelope)}"
-        raise InputError(f"{given} with start = 'steady' or continue_from: growth starts from rest, leave it out")
-    return [(soft / frequency_hz, SMOOTH_STEP)] if soft >= SHORTEST else pieces
+def _start(start: Any, feet: bool) -> tuple[str, EndState | None]:
+    """("rest" or "steady", state that the run continues). Raises InputError."""
+    if start is None:
+        return "steady" if feet else "rest", None
+    before = getattr(start, "end", None)
+    if isinstance(before, EndState):
+        return "steady" if before.steady else "rest", before
+    if not isinstance(start, str) or start not in ("rest", "steady"):
+        raise InputError(f"start = {shown(start)}: give 'rest', 'steady', a Motion or a FreeVibration")
+    return start, None
 
 
-def _longest_step(
-    frequency_hz: float, duration: float, step: float | None, steps_per_period: int | None, sliders: Sequence[Slider]
-) -> float:
+def _check_start(
+    start: str,
+    before: EndState | None,
+    excitation: Excitation,
+    sliders: Sequence[Slider],
+    *,
+    edges: bool,
+    modes: int | None,
+) -> None:
+    """Raise InputError for what this initial state excludes; `edges`: whether the model has straight links."""
+    if sliders and sliders[0].line == "raw" and (not edges or start == "steady"):
+        raise InputError("slider.line = 'raw': this model and start have no straight edges of links, leave it out")
+    if modes is not None and start == "steady" and not (sliders and sliders[0].coupling == "two-way"):
+        raise InputError(f"modes = {modes!r}: a steady field without two-way coupling uses no modes, leave it out")
+    if (excitation.soft_start_periods or excitation.envelope) and (start == "steady" or before is not None):
+        name = "soft_start_periods" if excitation.soft_start_periods else "envelope"
+        value = shown(getattr(excitation, name))
+        raise InputError(f"{name} = {value}: forces grow from start = 'rest' alone, leave it out or give this start")
+
+
+def _longest_step(frequency_hz: float, duration: float, step: Step, sliders: Sequence[Slider]) -> float:
     """Largest time step of a slider, s; infinite without slider. Raises InputError."""
     if not sliders:
-        if step is not None or steps_per_period is not None:
-            name = "steps_per_period" if step is None else "step"
-            raise InputError(f"{name}: a beam without slider has no time steps, leave it out or give slider")
+        if step != Step():
+            raise InputError("step: a beam without slider has no time steps, leave it out or give slider")
         return inf
     least = STEPS_PER_PERIOD if sliders[0].contact is None else FEET_STEPS_PER_PERIOD
-    per_period = least if steps_per_period is None else steps_per_period
-    check_integer("steps_per_period", per_period, 1)
-    longest = 1.0 / (per_period * frequency_hz) if step is None else step
-    check_number("step", longest, "seconds", above=0)
+    per_period = least if step.per_period is None else step.per_period
+    longest = 1.0 / (per_period * frequency_hz) if step.seconds is None else step.seconds
     if longest * frequency_hz > COARSEST:
         most = f"{COARSEST / frequency_hz:.3g} s"
-        raise InputError(f"step = {longest!r} s does not resolve the drive: give at most {most}")
+        given = f"step = {longest!r} s" if step.seconds is not None else f"step.per_period = {per_period!r}"
+        raise InputError(f"{given} does not resolve the drive: give a step of at most {most}")
     check_steps(duration, longest)
     return longest
 
@@ -266,31 +275,22 @@ def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samp
     return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
 
 
-def _before(
-    run: Any, beam: Beam, model: str, count: int | None, start: str, sliders: Sequence[Slider]
-) -> EndState | None:
-    """The state that a run continues. Raises InputError for another beam, model, start or slider."""
-    if run is None:
-        return None
-    before = getattr(run, "end", None)
-    if not isinstance(before, EndState):
-        raise InputError(f"continue_from = {shown(run)}: give a Motion or a FreeVibration")
-    ran = (before.model, before.count, "steady" if before.steady else "rest")
-    for name, here, there in zip(("model", "count", "start"), (model, count, start), ran, strict=True):
+def _check_continued(before: EndState, beam: Beam, model: str, count: int | None, sliders: Sequence[Slider]) -> None:
+    """Raise InputError for a run that continues one of another beam, model or slider."""
+    for name, here, there in (("model", model, before.model), ("count", count, before.count)):
         if here != there:
-            raise InputError(f"{name} = {here!r}: continue_from is a run with {name} = {there!r}, give the same")
+            raise InputError(f"{name} = {here!r}: start is a run with {name} = {there!r}, give the same")
     if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
-        raise InputError("continue_from is a run of another beam: give the same beam (loss_factor may differ)")
+        raise InputError("start is a run of another beam: give the same beam (loss_factor may differ)")
     if before.contact is None or not sliders:
-        return before
+        return
     if before.off:
-        raise InputError(f"continue_from: its slider {before.off}, continue a run whose slider did not")
+        raise InputError(f"start: its slider {before.off}, continue a run whose slider did not")
     if len(sliders) != len(before.starts):
-        raise InputError(f"continue_from has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
+        raise InputError(f"start has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
     states = zip(sliders, before.starts, before.contact.sliders.tolist(), before.sliders, strict=True)
     for slider, first, (travelled, speed), earlier in states:
         own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
         for name, (value, known) in zip(("position", "speed"), own, strict=True):
             if value not in known:
                 raise InputError(f"slider.{name} = {value!r}: the earlier run ends with {known[-1]!r}, leave it out")
-    return before

@@ -4,6 +4,7 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
+from verify.contact.state import Records
 from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
 from verify.problem.beam import Beam
@@ -86,14 +87,14 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
 
 
 class ContactState(Struct, frozen=True, eq=False):
-    """Sliders, feet and points at the end of a run, in the columns of `layout`."""
+    """Sliders, feet and points at the end of a run."""
 
     sliders: Array
     """(sliders, 2): distance travelled and speed."""
     feet: Array
     """(feet, 4): height, its rate, pitch, its rate."""
-    points: Array
-    """(points, columns of memory)."""
+    points: Records
+    """(points,), CONTACT."""
 
 
 class EndState(Struct, frozen=True, eq=False, kw_only=True):

@@ -10,35 +10,29 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics import layout as lay
+from verify.contact.state import BILATERAL
 from verify.dynamics import step_control, validity
 from verify.dynamics.contact_assembly import assemble, contact_rate
 from verify.dynamics.initial_state import set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
 from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
-from verify.dynamics.stepping import Contacts, Run, run_stages
+from verify.dynamics.state import SAMPLE
+from verify.dynamics.stepping import Assembly, Run, run_stages
 from verify.errors import InputError
 from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
 
-COLUMNS = {
-    "travelled": lay.OUT_X, "speed": lay.OUT_V, "friction": lay.OUT_FRICTION, "normal_force": lay.OUT_NORMAL,
-    "surface_speed": lay.OUT_SURFACE, "contact_fraction": lay.OUT_TOUCH, "stick_fraction": lay.OUT_STUCK,
-    "friction_loss": lay.OUT_LOSS, "tangential_work": lay.OUT_ALONG,
-}  # fmt: skip
-"""Column of the engine's samples by field of `Motion`."""
-WORKS = {
-    "slope_work": lay.SLOPE_WORK,
-    "tangential_work": lay.TANGENTIAL_WORK,
-    "normal_work": lay.NORMAL_WORK,
-    "contact_loss": lay.CONTACT_LOSS,
-    "friction_loss": lay.FRICTION_LOSS,
-    "friction_on_beam": lay.FRICTION_ON_BEAM,
-    "normal_on_beam": lay.NORMAL_ON_BEAM,
-}
-"""Column of the engine's sums by term of `EnergyBalance`."""
-SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *COLUMNS)
+WORKS = (
+    *("slope_work", "tangential_work", "normal_work", "contact_loss", "friction_loss", "friction_on_beam"),
+    "normal_on_beam",
+)
+"""Sums of the engine by term of `EnergyBalance`."""
+SAMPLES = SAMPLE.names or ()
+"""Samples of the engine by field of `Motion`."""
+SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *SAMPLES)
+FOOT_STATE = ("height", "velocity_z", "pitch", "pitch_rate")
+"""Columns of `ContactState.feet`."""
 Progress = Callable[[float], None]
 
 
@@ -49,7 +43,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     basis: TimeBasis | None
     """None without free modes."""
     stages: list[Stage]
-    contacts: Contacts
+    assembly: Assembly
     """Sliders without transverse motion, feet at height 0; a run advances a copy."""
     coupling: validity.Coupling
     margins: validity.Margins
@@ -72,7 +66,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             request=request,
             basis=basis,
             stages=stages,
-            contacts=assemble(beam, request.sliders, starts, request.prescribed_speeds, request.fixed),
+            assembly=assemble(beam, request.sliders, starts, request.prescribed_speeds, request.fixed),
             coupling=validity.coupling_of(beam, request.sliders, starts, stages[-1], receptance),
             margins=validity.margins_of(request, stages[-1]),
             notes=notes,
@@ -84,7 +78,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _with_feet_steps(self) -> "SliderRun":
         request, basis = self.request, self.basis if self.request.two_way else None
-        rate, fastest = contact_rate(self.contacts, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
+        rate, fastest = contact_rate(self.assembly, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
         step = step_control.feet_step(self.stages[0].steps.dt, rate, fastest, request.step)
         stages, slips = step_control.stepped(self.stages, step), validity.presliding(request)
         margins = replace(self.margins, presliding=slips, contact_step=rate * stages[-1].steps.dt)
@@ -112,35 +106,37 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         at_rest = np.zeros(len(stage.rows.rates), dtype=complex)
         return stage.free(self.request.continued(stage) if self.request.before else at_rest)
 
-    def _initial(self) -> tuple[Contacts, ComplexArray]:
+    def _initial(self) -> tuple[Assembly, ComplexArray]:
         """Sliders in equilibrium or in the state of an earlier run, and free rows, (n,). Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
-        contacts, z = self.contacts.copy(), self._unloaded()
-        dt = stage.steps.dt if contacts.law == lay.SPRING and contacts.restitution is None else 0.0
+        assembly, z = self.assembly.copy(), self._unloaded()
+        dt = stage.steps.dt if assembly.springs else 0.0
         rise: Array | float = 0.0
 
         def released(q: Array, seconds: float) -> Array:
             rows = stage.rows
             return rows.state(rows.after(rows.of_state(q, 0.0 * q), seconds))[0][: len(q)] if dt else q
 
-        if basis and contacts.normal_two_way:
-            still, rise = static_deflection(basis, contacts, released, dt)
+        if basis and assembly.kind.normal_two_way:
+            still, rise = static_deflection(basis, assembly, released, dt)
             if before is None:
                 z = stage.rows.of_state(still, 0.0 * still)
-                if stage.forced is None and contacts.law == lay.BILATERAL:
-                    z = z + steady_with_mass(basis, stage, contacts, request.damping_in(basis))
+                if stage.forced is None and assembly.kind.normal_law == BILATERAL:
+                    z = z + steady_with_mass(basis, stage, assembly, request.damping_in(basis))
                 z = stage.free(z)
         if before is None or before.contact is None:
-            set_down(contacts, stage, z, rise)
-            return contacts, z
+            set_down(assembly, stage, z, rise)
+            return assembly, z
         state = before.contact
-        if state.points.shape != contacts.contacts.shape or len(state.feet) != len(contacts.feet):
-            raise InputError("continue_from: its feet differ from slider.foot, give both runs the same slider")
-        prescribed = contacts.sliders[:, lay.INVERSE_MASS] == 0.0
-        contacts.sliders[:, lay.X] = state.sliders[:, 0]
-        contacts.sliders[:, lay.V] = np.where(prescribed, contacts.sliders[:, lay.V], state.sliders[:, 1])
-        contacts.feet[:, : lay.PITCH_RATE + 1], contacts.contacts[:] = state.feet, state.points
-        return contacts, z
+        if state.points.shape != assembly.contacts.shape or len(state.feet) != len(assembly.feet):
+            raise InputError("start: its feet differ from slider.foot, give both runs the same slider")
+        prescribed = assembly.sliders["inverse_mass"] == 0.0
+        assembly.sliders["x"] = state.sliders[:, 0]
+        assembly.sliders["v"] = np.where(prescribed, assembly.sliders["v"], state.sliders[:, 1])
+        for name, values in zip(FOOT_STATE, state.feet.T, strict=True):
+            assembly.feet[name] = values
+        assembly.contacts[:] = state.points
+        return assembly, z
 
     def converged(self, progress: Progress) -> Motion:
         """The run; where friction acts on its own slip, also the change when an automatic step is doubled.
@@ -184,39 +180,21 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
         return replace(motion, notes=(*motion.notes, *notes))
 
-    def run(self, stages: list[Stage], contacts: Contacts, z: ComplexArray, progress: Progress) -> Motion:
-        """One run through these stages from an initial state of contacts and free rows."""
-        began, request, contacts = perf_counter(), self.request, contacts.copy()
-        p, depth = contacts.points, np.maximum(contacts.contacts[:, lay.DEPTH], 0.0)
-        kinetic = self._kinetic(contacts)
-        heights, pressures = contacts.feet[None][:, :, [lay.HEIGHT, lay.PITCH]].copy(), (p[:, lay.STIFF] * depth)[None]
-        recorded, deflection, beam, accounts = self._marched(stages, z, contacts, progress)
-        gains = self._kinetic(contacts) - kinetic, float(recorded.sums[:, lay.STORED].sum()), *beam
-        n, kept = len(recorded.samples), np.concatenate([recorded.first[None], recorded.samples])
+    def run(self, stages: list[Stage], assembly: Assembly, z: ComplexArray, progress: Progress) -> Motion:
+        """One run through these stages from an initial state of assembly and free rows."""
+        began, request, assembly = perf_counter(), self.request, assembly.copy()
+        kinetic = self._kinetic(assembly)
+        recorded, deflection, beam, accounts = self._marched(stages, z, assembly, progress)
+        gains = self._kinetic(assembly) - kinetic, float(recorded.journal.sums["stored"].sum()), *beam
+        journal, sums, n = recorded.journal, recorded.journal.sums, len(recorded.journal.samples)
+        journal.deflections[0] = deflection[0]
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            kept[0, still, lay.OUT_FRICTION] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
-        heights = np.concatenate([heights, recorded.heights])
-        deflection, voltages, charges = request.split(np.concatenate([deflection, recorded.deflections]))
-        steps = recorded.n_steps
-        for stage in stages:
-            if steps <= stage.steps.n:
-                break
-            steps -= stage.steps.n
-        end = stage.origin + steps * stage.steps.dt
-        seconds, sums, margins = end - stages[0].origin, recorded.sums, self.margins
+            journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+        end = self._end(stages, recorded)
+        seconds = end - stages[0].origin
         mean = 1.0 / seconds if seconds > 0.0 else float("nan")
-        if not request.feet:
-            fall = float(sums[:, lay.MAX_FALL].max())
-            margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
-        offsets = np.array(request.starts) - request.starts[0]
-        lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
-        left = recorded.stopped not in (END, "diverged", "chatters")
-        state = (
-            contacts.sliders[:, [lay.X, lay.V]],
-            contacts.feet[:, : lay.PITCH_RATE + 1].copy(),
-            contacts.contacts.copy(),
-        )
+        deflections, voltages, charges = request.split(journal.deflections)
 
         def each(values: Array) -> Any:
             """Values of all sliders of a sequence, or of the single slider."""
@@ -226,49 +204,65 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return Motion(
             model=request.model,
             count=request.count,
-            times=np.concatenate([[stages[0].origin], *(s.origin + s.sample_times for s in stages)])[: n + 1],
+            times=np.concatenate([[stages[0].origin], *(s.origin + s.sample_times for s in stages)])[:n],
             points=request.points,
-            deflection=deflection,
+            deflection=deflections,
             voltages=voltages,
             charges=charges,
             slider=request.sliders if self.sequence else request.sliders[0],
             start=request.starts if self.sequence else request.starts[0],
-            **{name: each(kept[:, :, column]) for name, column in COLUMNS.items()},
-            height=heights[:, :, 0],
-            pitch=heights[:, :, 1],
-            pressures=np.concatenate([pressures, recorded.pressures]),
-            point_offsets=p[:, lay.OFFSET] - offsets[contacts.indices[:, lay.OF_SLIDER]],
+            **{name: each(journal.samples[name]) for name in SAMPLES},
+            height=journal.heights[:, :, 0],
+            pitch=journal.heights[:, :, 1],
+            pressures=journal.pressures,
+            point_offsets=self._point_offsets(assembly),
             events=recorded.events,
-            mean_friction=each(mean * sums[:, lay.FRICTION_TIME]),
-            largest_friction=each(sums[:, lay.MAX_FRICTION]),
-            mean_surface_speed=each(mean * sums[:, lay.SURFACE_TIME]),
+            mean_friction=each(mean * sums["friction_time"]),
+            largest_friction=each(sums["max_friction"].copy()),
+            mean_surface_speed=each(mean * sums["surface_time"]),
             coupling=self.coupling,
-            margins=margins,
-            energy=_balance(recorded, gains, contacts.two_way, accounts),
-            notes=(*self.notes, *lost * (recorded.n_events > len(recorded.events))),
-            statistics=Statistics(
-                steps=recorded.n_steps,
-                evaluations=2 * recorded.n_steps + 1,
-                step_s=stages[-1].steps.dt,
-                set_up_s=recorded.set_up_s,
-                wall_s=perf_counter() - began,
-                loop_s=recorded.loop_s,
-                unconverged=int(recorded.balance[lay.UNCONVERGED]),
-                stopped=recorded.stopped,
-            ),
+            margins=self._margins(float(sums["max_fall"].max())),
+            energy=_balance(recorded, gains, assembly.kind.two_way, accounts),
+            notes=self._notes(recorded),
+            statistics=_statistics(recorded, stages[-1].steps.dt, perf_counter() - began),
             end=request.end(
                 stages[-1],
                 recorded.z,
                 end,
                 starts=request.starts,
                 sliders=request.sliders,
-                contact=ContactState(*state),
-                off=recorded.stopped if left else "",
+                contact=_state(assembly),
+                off="" if recorded.stopped in (END, "diverged", "chatters") else recorded.stopped,
             ),
         )
 
+    def _end(self, stages: list[Stage], recorded: Run) -> float:
+        """End time of a run, s."""
+        steps = recorded.n_steps
+        for stage in stages:
+            if steps <= stage.steps.n:
+                break
+            steps -= stage.steps.n
+        return stage.origin + steps * stage.steps.dt
+
+    def _margins(self, fall: float) -> validity.Margins:
+        """Margins with the largest downward acceleration of the surface, m/s^2, of points without feet."""
+        if self.request.feet:
+            return self.margins
+        return replace(self.margins, lift_off=fall / self.request.gravity if self.request.gravity else inf)
+
+    def _notes(self, recorded: Run) -> tuple[str, ...]:
+        """Notes, with one on events beyond the capacity."""
+        lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
+        return (*self.notes, *lost * (recorded.n_events > len(recorded.events)))
+
+    def _point_offsets(self, assembly: Assembly) -> Array:
+        """Positions of the points relative to their slider, (points,), m."""
+        offsets = np.array(self.request.starts) - self.request.starts[0]
+        return np.asarray(assembly.points["offset"] - offsets[assembly.points["slider"]])
+
     def _marched(
-        self, stages: list[Stage], z: ComplexArray, contacts: Contacts, progress: Progress
+        self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress
     ) -> tuple[Run, Array, tuple[float, float, float], bool]:
         """March beam and sliders to the end.
 
@@ -277,45 +271,70 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """
         n_steps, points = sum(stage.steps.n for stage in stages), self.request.points
         # impacts do not act on the beam: its balance is exact
-        rest = self.request.start == "rest" and contacts.restitution is None
+        rest = self.request.start == "rest" and assembly.restitution is None
         kinetic, elastic = stages[0].rows.energies(stages[0].whole(z, 0.0))
         deflection = stages[0].deflection(z, np.zeros(1), points)
-        recorded = run_stages(stages, z, contacts, points, accounts=rest, progress=lambda n: progress(n / n_steps))
+        recorded = run_stages(stages, z, assembly, points, accounts=rest, progress=lambda n: progress(n / n_steps))
         after = stages[-1].rows.energies(recorded.z)
         return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
 
-    def _kinetic(self, contacts: Contacts) -> float:
+    def _kinetic(self, assembly: Assembly) -> float:
         """Kinetic energy of sliders and feet, along and across the beam, J."""
-        feet, masses = contacts.feet, np.array([slider.mass for slider in self.request.sliders])
-        twice = masses @ contacts.sliders[:, lay.V] ** 2
-        if len(feet):
-            inverse = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]]  # 0 where nothing moves
-            inertia = np.divide(1.0, inverse, out=np.zeros_like(inverse), where=inverse > 0.0)
-            twice += (inertia * feet[:, [lay.VELOCITY_Z, lay.PITCH_RATE]] ** 2).sum()
-        if contacts.law == lay.BILATERAL:
-            twice += contacts.points[:, lay.INERTIA] @ contacts.contacts[:, lay.POINT_VZ] ** 2
+        feet, masses = assembly.feet, np.array([slider.mass for slider in self.request.sliders])
+        twice = masses @ assembly.sliders["v"] ** 2
+        for inverse, rate in (("inverse_mass", "velocity_z"), ("inverse_inertia", "pitch_rate")):
+            moves = feet[inverse] > 0.0  # 0 where nothing moves
+            twice += (feet[rate][moves] ** 2 / feet[inverse][moves]).sum()
+        if assembly.kind.normal_law == BILATERAL:
+            twice += assembly.points["mass"] @ assembly.contacts["point_vz"] ** 2
         return 0.5 * float(twice)
+
+
+def _state(assembly: Assembly) -> ContactState:
+    """State of sliders, feet and points."""
+    sliders, feet = assembly.sliders, assembly.feet
+    return ContactState(
+        sliders=np.stack([sliders["x"], sliders["v"]], axis=1),
+        feet=np.stack([feet[name] for name in FOOT_STATE], axis=1),
+        points=assembly.contacts.copy(),
+    )
+
+
+def _statistics(recorded: Run, dt: float, wall: float) -> Statistics:
+    """Cost of a run of steps of dt that took `wall` seconds."""
+    return Statistics(
+        steps=recorded.n_steps,
+        evaluations=2 * recorded.n_steps + 1,
+        step_s=dt,
+        set_up_s=recorded.set_up_s,
+        wall_s=wall,
+        loop_s=recorded.loop_s,
+        unconverged=int(recorded.balance["unconverged"]),
+        stopped=recorded.stopped,
+    )
 
 
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
-    s, (slider, stored, kinetic, elastic, initial) = recorded.sums.sum(axis=0), gains
-    work = s[lay.NORMAL_WORK] + s[lay.TANGENTIAL_WORK] + s[lay.SLOPE_WORK] + s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]
-    residual = work - s[lay.FRICTION_LOSS] - s[lay.CONTACT_LOSS] - slider - stored
-    driven, lost, resisted = (float(recorded.balance[column]) for column in (lay.DRIVEN, lay.LOST, lay.RESISTED))
-    beam = driven + (s[lay.FRICTION_ON_BEAM] + s[lay.NORMAL_ON_BEAM]) * two_way - lost - kinetic - elastic
+    sums, (slider, stored, kinetic, elastic, initial) = recorded.journal.sums, gains
+    works, balance = {name: float(sums[name].sum()) for name in sums.dtype.names or ()}, recorded.balance
+    load = works["external_work"] + works["load_work"]
+    work = works["normal_work"] + works["tangential_work"] + works["slope_work"] + load
+    residual = work - works["friction_loss"] - works["contact_loss"] - slider - stored
+    contact = (works["friction_on_beam"] + works["normal_on_beam"]) * two_way
+    beam = balance["driven"] + contact - balance["lost"] - kinetic - elastic
     return EnergyBalance(
         kinetic=kinetic,
         elastic=elastic,
         slider=slider,
         contact_elastic=stored,
-        drive_work=driven,
-        load_work=float(s[lay.EXTERNAL_WORK] + s[lay.LOAD_WORK]),
-        damping_loss=lost - resisted,
-        circuit_loss=resisted,
-        **{name: float(s[column]) for name, column in WORKS.items()},
+        drive_work=balance["driven"],
+        load_work=load,
+        damping_loss=balance["lost"] - balance["resisted"],
+        circuit_loss=balance["resisted"],
+        **{name: works[name] for name in WORKS},
         initial=initial,
-        created=float(recorded.balance[lay.CREATED]),
-        slider_residual=float(residual),
-        residual=float(beam if accounts and abs(beam) > abs(residual) else residual),
+        created=balance["created"],
+        slider_residual=residual,
+        residual=beam if accounts and abs(beam) > abs(residual) else residual,
     )

@@ -137,7 +137,7 @@ def check_energy(motion: Motion, frequency_hz: float, feet: bool, resolved: bool
     if missed > MOST_GAIN * scale > 0.0:
         raise InputError(
             f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {scale:.3g} J exchanged; give a step "
-            f"of at most {0.25 * dt:.2g} s (steps_per_period = {ceil(4.0 / (dt * frequency_hz))})"
+            f"of at most {0.25 * dt:.2g} s ({ceil(4.0 / (dt * frequency_hz))} steps per period)"
         )
     share = abs(energy.residual) / scale if scale else 0.0
     what = "not converged, the energy balance" if feet or resolved else "does not resolve the drive, its work"

@@ -9,6 +9,7 @@ import numpy as np
 from verify.analysis.margins import sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
+from verify.dynamics.arguments import Keep, Step
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.registry import MODELS
@@ -117,8 +118,8 @@ def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int |
         raise InputError("what = 'motion': motion in time does not model drive.device, leave drive.device out")
     arguments = motion_arguments(scene, TimeOptions(model=request.model, count=count))
     if scene.slider is not None:
-        arguments |= {"slider": scene.slider, "steps_per_period": scene.motion.steps_per_period}
-    run = simulate(**arguments, at=x.tolist(), samples=request.samples or INSTANTS)
+        arguments |= {"slider": scene.slider, "step": Step(per_period=scene.motion.steps_per_period)}
+    run = simulate(**arguments, keep=Keep(at=x, samples=request.samples or INSTANTS))
     names = ("position", "speed", "friction", "surface_speed", "normal_force") if scene.slider else ()
     return {
         "title": f"motion, 0 to {run.times[-1]:g} s",

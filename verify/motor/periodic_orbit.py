@@ -8,7 +8,6 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError
@@ -48,7 +47,7 @@ def periodic_orbit(
     arm = float(np.abs(run.point_offsets).max()) or 1.0
     scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
     feet = assemble(case.beam, (slider,), (slider.initial_position(case.beam),), (speed,), (True,)).feet
-    moves = feet[:, [lay.INVERSE_FOOT_MASS, lay.INVERSE_INERTIA]] > 0.0
+    moves = np.stack([feet["inverse_mass"], feet["inverse_inertia"]], axis=1) > 0.0
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]
 

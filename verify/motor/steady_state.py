@@ -17,10 +17,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from msgspec import Struct
-from msgspec.structs import asdict
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
+from verify.dynamics.arguments import Excitation, Keep, PrescribedSlider, Step
 from verify.dynamics.linear_system import steady_beam
 from verify.dynamics.request import FEET_STEPS_PER_PERIOD
 from verify.dynamics.result import Motion
@@ -75,10 +75,20 @@ class MotorCase(Struct, frozen=True, kw_only=True):
         self, periods: float, samples: int, before: Motion | None = None, prescribed_speed: float | None = None
     ) -> Motion:
         """A run of `periods` drive periods, fixed in position if the speed (m/s) is prescribed. Raises InputError."""
+        free = prescribed_speed is None
         return simulate(
-            **asdict(self), duration=periods * self.period, samples=samples, continue_from=before,
-            prescribed_speed=prescribed_speed, fixed_position=prescribed_speed is not None,
-        )  # fmt: skip
+            self.beam,
+            Excitation(self.forces, self.frequency_hz, self.soft_start_periods, circuits=self.circuits),
+            periods * self.period,
+            model=self.model,
+            count=self.count,
+            modes=self.modes,
+            modal_damping=self.modal_damping,
+            slider=self.slider if free else PrescribedSlider(self.slider, prescribed_speed, fixed_position=True),
+            start=self.start if before is None else before,
+            step=Step(per_period=self.steps_per_period),
+            keep=Keep(samples=samples),
+        )
 
 
 @lru_cache(maxsize=16)

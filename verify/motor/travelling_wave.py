@@ -6,7 +6,6 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
-from verify.dynamics import layout as lay
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import EXACT_DEGREE, Stage, Steps, cut
 from verify.dynamics.stepping import run_stages
@@ -47,10 +46,10 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:
         """(displacement, change of speed) over a period."""
-        contacts = assemble(beam, (slider,), (start,), (None,), (False,))
-        contacts.sliders[0, lay.V] = speed
-        run_stages([stage], no_rows, contacts, np.empty(0))
-        travelled, reached = contacts.sliders[0, [lay.X, lay.V]]
+        assembly = assemble(beam, (slider,), (start,), (None,), (False,))
+        assembly.sliders["v"][0] = speed
+        run_stages([stage], no_rows, assembly, np.empty(0))
+        travelled, reached = assembly.sliders["x"][0], assembly.sliders["v"][0]
         if not isfinite(reached):
             raise InputError(f"amplitude = {amplitude!r} m: the slider leaves the steep wave, lower it")
         return float(travelled), float(reached) - speed
@@ -94,10 +93,10 @@ def foot_on_wave(
     contact = Contact(layer_stiffness=1.0, layer_tangential_stiffness=along)
     foot = Foot(length=length, points=points, offset=0.5 * length, pitches=False)
     slider = Slider(mass=1.0, mu=mu, law="coulomb", contact=contact, foot=(foot,))
-    contacts = assemble(beam, (replace(slider, coupling="one-way"),), (0.0,), (-speed_ratio * crest,), (True,))
-    contacts.feet[:, lay.INVERSE_FOOT_MASS] = 0.0
-    contacts.feet[:, lay.HEIGHT] = amplitude * cos(contact_half_angle)
-    last = run_stages([stage], np.empty(0, dtype=complex), contacts, np.empty(0)).samples[-1, 0]
-    read = lay.OUT_FRICTION, lay.OUT_NORMAL, lay.OUT_TOUCH, lay.OUT_STUCK
-    works = last[[lay.OUT_ALONG, lay.OUT_LOSS]] * periods / stage.duration
-    return Means(*map(float, last[list(read)]), *map(float, works)), crest
+    assembly = assemble(beam, (replace(slider, coupling="one-way"),), (0.0,), (-speed_ratio * crest,), (True,))
+    assembly.feet["inverse_mass"] = 0.0
+    assembly.feet["height"] = amplitude * cos(contact_half_angle)
+    last = run_stages([stage], np.empty(0, dtype=complex), assembly, np.empty(0)).journal.samples[-1, 0]
+    works = [float(last[name]) * periods / stage.duration for name in ("tangential_work", "friction_loss")]
+    means = [float(last[name]) for name in ("friction", "normal_force", "contact_fraction", "stick_fraction")]
+    return Means(*means, *works), crest

@@ -107,10 +107,12 @@ def _drive(scene: Scene, time: TimeOptions) -> tuple[tuple[PointForce, ...], flo
         time = replace(time, soft_start_periods=0.0)
     check_forces(scene, "a nonlinear chain")
     request = motion_arguments(scene, time)
+    excitation = request["excitation"]
+    given = request | {"soft_start_periods": excitation.soft_start_periods}
     for name, needed in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
-        if (request[name] or 0.0) != needed:
-            raise InputError(f"{name} = {request[name]!r}: a chain starts from rest and is undamped, give {needed!r}")
-    return request["forces"], request["frequency_hz"], request["duration"]
+        if (given[name] or 0.0) != needed:
+            raise InputError(f"{name} = {given[name]!r}: a chain starts from rest and is undamped, give {needed!r}")
+    return excitation.forces, excitation.frequency_hz, request["duration"]
 
 
 class FromRest(msgspec.Struct, frozen=True, kw_only=True):
@@ -177,23 +179,22 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
     def run(self, scene: Scene, cache: "SolutionCache", options: SliderOptions) -> "Motion":
         """The motion of the slider. Raises InputError."""
         from verify.chain.slider_on_chain import slide_on_chain
+        from verify.dynamics.arguments import Excitation, Keep
 
         if scene.motion is None:
             raise InputError("motion is missing: add [motion] with a duration for a slider on a chain")
         time = TimeOptions(model="analytic", force=self.force, soft_start_periods=self.soft_start_periods)
         case: dict[str, Any] = {"slider": options.of(scene), "count": self.segments, "links": self.links}
-        case["load"] = self.load
-        case |= {"joint_dashpot": self.joint_dashpot, "step": options.step}
-        drive, steps = _drive(scene, time), scene.motion.steps_per_period
-        key: Any = ("chain", scene.beam, *drive, *case.values(), steps)
+        case |= {"load": self.load, "joint_dashpot": self.joint_dashpot, "step": options.time_step(scene)}
+        forces, hertz, seconds = _drive(scene, time)
+        drive = scene.beam, Excitation(forces, hertz), seconds
+        key: Any = ("chain", *drive, *case.values())
         if key not in cache.motors:
-            cache.motors[key] = slide_on_chain(
-                scene.beam, *drive, **case, steps_per_period=steps, samples=2, progress=cache.progress
-            )
+            cache.motors[key] = slide_on_chain(*drive, **case, keep=Keep(samples=2), progress=cache.progress)
         motion: Motion = cache.motors[key]
         if not motion.statistics.finished:
             raise InputError(
-                f"duration = {drive[2]:.12g} s: the slider {motion.statistics.stopped} after {motion.end.time:.6g} s, "
+                f"duration = {seconds:.12g} s: the slider {motion.statistics.stopped} after {motion.end.time:.6g} s, "
                 "give a shorter duration or another slider_position"
             )
         return motion

@@ -16,6 +16,7 @@ from verify.validation import check_sizes, unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.dynamics.arguments import Step
     from verify.dynamics.result import EnergyBalance, Motion
 
 Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
@@ -62,9 +63,18 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
+    def time_step(self, scene: Scene) -> "Step":
+        """The time step, by default by the scene's number in a period."""
+        from verify.dynamics.arguments import Step
+
+        steps = scene.motion.steps_per_period if scene.motion and self.step is None else None
+        return Step(seconds=self.step, per_period=steps)
+
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
+    from verify.dynamics.arguments import Excitation
+
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if motion is None else by.time or motion.duration
     if time is None:
@@ -79,17 +89,17 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
         soft = (SOFT_START_PERIODS if start == "rest" else 0.0) if soft is None else soft
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
-    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "soft_start_periods": soft}
+    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start}
     there = scene.in_time(forces, hertz)
-    driven = {"beam": there.beam, "forces": there.loads, "frequency_hz": hertz, "duration": time}
-    return {**driven, **own, "modal_damping": damping, "circuits": there.circuits}
+    excitation = Excitation(there.loads, hertz, soft, circuits=there.circuits)
+    driven = {"beam": there.beam, "excitation": excitation, "duration": time}
+    return {**driven, **own, "modal_damping": damping}
 
 
-def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -> "Motion":
+def _simulated(cache: "SolutionCache", arguments: dict[str, Any]) -> "Motion":
     """A simulation, computed once for equal arguments."""
     from verify.dynamics.simulate import simulate
 
-    arguments = arguments | {"samples": 2} | more
     key = tuple(arguments.items())
     if key not in cache.motions:
         cache.motions[key] = simulate(**arguments, progress=cache.progress)
@@ -97,16 +107,25 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any], **more: Any) -
 
 
 def slider_run(
-    scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, reverse: bool = False, **more: Any
+    scene: Scene,
+    cache: "SolutionCache",
+    by: TimeOptions,
+    slider: SliderOptions,
+    *,
+    reverse: bool = False,
+    at: tuple[float, ...] = (),
 ) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
+    from verify.dynamics.arguments import Keep
     from verify.dynamics.step_control import CONVERGED
 
     arguments = motion_arguments(scene, by)
     if reverse:
-        arguments["forces"] = tuple(replace(one, phase_deg=-one.phase_deg) for one in arguments["forces"])
-    steps = scene.motion.steps_per_period if scene.motion else None
-    run = _simulated(cache, arguments, slider=slider.of(scene), step=slider.step, steps_per_period=steps, **more)
+        own = arguments["excitation"]
+        backward = [replace(one, phase_deg=-one.phase_deg) for one in own.forces]
+        arguments["excitation"] = replace(own, forces=backward)
+    own = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
+    run = _simulated(cache, arguments | own)
     status = run.statistics
     if not status.finished:
         raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
@@ -249,16 +268,18 @@ def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window:
     """Reflection Gamma in a window of the driven beam in time, without slider: two waves fitted to its phasors."""
     import numpy as np
 
+    from verify.dynamics.arguments import Keep
     from verify.linear.positions import positions_on
     from verify.travelling_wave import measure_series
     from verify.waves.window import check_span, check_waves
 
     arguments, beam = motion_arguments(scene, by), scene.beam
-    hertz = arguments["frequency_hz"]
-    electrical = [load for one in arguments["circuits"] for load in one.loads(arguments["beam"])]
-    check_span(beam, [one.position for one in (*arguments["forces"], *electrical)], window)
+    excitation = arguments["excitation"]
+    hertz = excitation.frequency_hz
+    electrical = [load for one in excitation.circuits for load in one.loads(arguments["beam"])]
+    check_span(beam, [one.position for one in (*excitation.forces, *electrical)], window)
     check_waves(beam, hertz, window)
     x = positions_on("window", np.linspace(*window, POINTS), beam.length)
     samples = int(SAMPLES_PER_PERIOD * arguments["duration"] * hertz) + 1
-    run = _simulated(cache, arguments, at=tuple(map(float, x)), samples=samples)
+    run = _simulated(cache, arguments | {"keep": Keep(at=x, samples=samples)})
     return measure_series(beam, x, run.times, run.deflection, hertz).reflection

@@ -108,11 +108,13 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return friction.breakaway(scene.slider, x, self.force_rate)
 
         def simulated(slider: Any, until: float) -> Any:
+            from verify.dynamics.arguments import Keep
             from verify.dynamics.simulate import simulate
             from verify.quantities.slider import TimeOptions, motion_arguments
 
             arguments = motion_arguments(scene, TimeOptions(model=self.model, count=self.count, time=until))
-            return simulate(**arguments, slider=slider, samples=int(16.0 * until * arguments["frequency_hz"]) + 2)
+            samples = int(16.0 * until * arguments["excitation"].frequency_hz) + 2
+            return simulate(**arguments, slider=slider, keep=Keep(samples=samples))
 
         return friction.run(scene.slider, names, x, simulated)
 

@@ -103,6 +103,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         import numpy as np
 
         from verify.analytic_modes import check_in_time
+        from verify.dynamics.arguments import Keep, Step
         from verify.dynamics.simulate import simulate
 
         slider = scene.slider
@@ -115,15 +116,15 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         check_in_time(scene.beam, "leave [motion] out, whose runs are compared with the exact beam")
         # the springs and sections of actuators are beyond the exact beam in time
         exact = scene.in_time(scene.forces, scene.drive.frequency_hz).beam == scene.beam
+        nodes = np.linspace(0.0, scene.beam.length, count + 1)
         runs: dict[str, Run] = {}
         for model in (*["analytic"] * exact, *(model.name for model in discrete("time_basis", scene.beam))):
             progress(f"slider on {MODELS[model].title}")
             runs[model] = simulate(
                 **motion_arguments(scene, TimeOptions(model=model, count=count if MODELS[model].sized else None)),
                 slider=slider,
-                at=np.linspace(0.0, scene.beam.length, count + 1).tolist(),
-                samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2),
-                steps_per_period=self.steps_per_period,
+                step=Step(per_period=self.steps_per_period),
+                keep=Keep(at=nodes, samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2)),
             )
         chain = runs[bounding()[0].name]
         sizes = [(run.model, run.count) for run in runs.values()]
@@ -170,6 +171,7 @@ def readings(scene: "Scene") -> "Table":
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
+    from verify.dynamics.arguments import Keep
     from verify.dynamics.simulate import simulate
 
     own = scene.slider
@@ -186,7 +188,7 @@ def readings(scene: "Scene") -> "Table":
         duration = times * scene.motion.duration
         try:
             arguments = motion_arguments(scene, TimeOptions(model="analytic", time=duration))
-            run = simulate(**arguments, slider=slider, samples=2)
+            run = simulate(**arguments, slider=slider, keep=Keep(samples=2))
             found = verdict_of(run_margins(run, slider, "exact beam"))
             worst = found.margins[0].text if found.margins else ""
             rows.append((name, assumption, duration, run.mean_speed, found.level, worst))

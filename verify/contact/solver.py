@@ -1,0 +1,103 @@
+"""Contact forces of a step: normal laws, friction laws and the responses of beam, feet and sliders to them.
+
+Points are swept one after the other (Gauss-Seidel), each law solved exactly with its own response, the others' forces
+fixed; where the sweeps do not converge, the friction of all points is solved together by active sets. On a surface
+without a response the points of a slider are one root.
+"""
+
+from verify.contact.active_sets import SETTLED, revise_limits, solve_active_sets
+from verify.contact.normal import set_normal_forces
+from verify.contact.one_way import solve_one_way_friction
+from verify.contact.points import set_friction
+from verify.contact.response import TANGENTIAL, own_product, product
+from verify.contact.state import BILATERAL, HOLDS, SLIDES, SPRING, Bodies, Kind, Record, Response
+from verify.jit import jit, once
+
+SWEEPS = 24
+"""Sweeps before the friction forces of a step are solved together: a third of the time of that solution."""
+TOLERANCE = 1e-12
+"""Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
+PASSES = 50
+"""Rounds of friction at given normal forces and of normal forces at given friction. The one acts on the other by the
+slope of the surface and by dashpots, both small; a step that needs more counts as not converged."""
+UNCONVERGED = 1e-9
+"""Change of a force, of the largest normal force, above which a step counts as not converged."""
+
+
+@once
+def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response) -> bool:
+    """Set gains of speed by external forces and all contact forces to zero; whether forces depend on each other."""
+    for b in range(bodies.sliders.shape[0]):
+        slider = bodies.sliders[b]
+        slider.delta_v = dt * (slider.inverse_mass * slider.external_force + slider.tilt)
+    for k in range(bodies.feet.shape[0]):
+        foot = bodies.feet[k]
+        foot.delta_vz = dt * foot.inverse_mass * (foot.load - foot.spring_rate * foot.height)
+        foot.delta_pitch_rate = 0.0
+    for j in range(len(response.rates)):
+        response.rates[j] = 0.0
+    n = bodies.points.shape[0]
+    coupled = kind.normal_law == BILATERAL or kind.several
+    for i in range(n):
+        contact = bodies.contacts[i]
+        contact.friction_before, contact.sticks_before = contact.friction, contact.sticks
+        contact.normal, contact.friction, contact.slip, contact.sticks, contact.holds = 0.0, 0.0, 0.0, 0.0, 0.0
+        contact.self_response = own_product(i, TANGENTIAL, response.shapes) if kind.two_way else 0.0
+        contact.grip = HOLDS if contact.sticks_before > 0.0 else SLIDES
+        coupled = coupled or bodies.points[i].dashpot > 0.0
+    return coupled
+
+
+@once
+def sweep(first: bool, dt: float, kind: Kind, bodies: Bodies, response: Response) -> tuple[float, float]:
+    """Set all forces once, one after the other; (largest change of a normal force, of any force), N."""
+    normal = set_normal_forces(first, dt, kind, bodies, response)
+    changed = normal
+    if kind.normal_law == SPRING and not kind.two_way:
+        return normal, changed  # friction is one root at the end
+    for i in range(bodies.points.shape[0]):
+        if kind.normal_law != SPRING or bodies.contacts[i].depth > 0.0:
+            changed = max(changed, set_friction(i, dt, kind, bodies, response))
+    return normal, changed
+
+
+@once
+def end_forces(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
+    """Set the speed of the surface with all forces, sticking, and the energy that friction has dissipated."""
+    for i in range(bodies.points.shape[0]):
+        contact = bodies.contacts[i]
+        contact.surface = contact.mean + (product(i, TANGENTIAL, response) if kind.two_way else 0.0)
+        contact.surface_before = 2.0 * contact.surface - contact.mean
+        contact.sticks = contact.holds if contact.normal > 0.0 else 0.0
+        if bodies.points[i].tangential_stiffness == 0.0:
+            contact.loss -= dt * contact.friction * contact.slip
+
+
+@jit(no_cpython_wrapper=True)
+def solve(dt: float, kind: Kind, bodies: Bodies, response: Response, balance: Record) -> None:
+    """Contact forces of the step, and what they add to sliders, feet and the columns (`response.rates`)."""
+    n, coupled = bodies.points.shape[0], begin_forces(dt, kind, bodies, response)
+    largest, sweeps, changed = 0.0, 0, 0.0
+    while True:
+        for _ in range(SWEEPS):
+            normal, changed = sweep(sweeps == 0, dt, kind, bodies, response)
+            sweeps, largest = sweeps + 1, max(largest, normal)  # the first change is the largest force
+            if changed <= TOLERANCE * largest or not coupled:
+                changed = 0.0
+                break
+        for _ in range(PASSES if changed > 0.0 and kind.two_way else 0):
+            changed = solve_active_sets(dt, largest, kind, bodies, response)
+            normal = set_normal_forces(sweeps == 0, dt, kind, bodies, response)  # a constant would be compiled anew
+            changed = max(changed, normal)
+            if normal <= SETTLED * largest:
+                break
+        if not kind.several or not revise_limits(dt, kind, bodies):
+            break
+    if kind.normal_law == SPRING and not kind.two_way:
+        for i in range(n):
+            if i + 1 == n or bodies.points[i + 1].slider != bodies.points[i].slider:
+                changed = max(changed, solve_one_way_friction(i, dt, kind, bodies))
+    balance.sweeps += sweeps
+    balance.unconverged += 1.0 if changed > UNCONVERGED * largest else 0.0
+    balance.residual = max(balance.residual, changed)
+    end_forces(dt, kind, bodies, response)
