@@ -275,7 +275,8 @@ def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absen
     order, longest, most = (4, limit, 4) if limit * hertz > 1.0 / 400.0 else (2, limit / sqrt(2.0), 1)
 
     def own(per_period: int, samples: int = 41) -> tuple[Array, Array]:
-        run = moved(problem, "segment", count, slider=one, step=1.0 / (hertz * per_period), samples=samples)
+        more: dict[str, Any] = {"step": 1.0 / (hertz * per_period), "keep": Keep(samples=samples)}
+        run = moved(problem, "segment", count, slider=one, **more)
         return run.times, run.travelled
 
     def method(name: str) -> Method:
