@@ -289,7 +289,7 @@ def advance(
     kind: Kind,
     chain: Chain,
     bodies: Bodies,
-    response: Response,
+    response: Response | None,
     journal: Journal,
 ) -> int:
     """Advance by up to n_steps from step `journal.progress`; why it returns. With no steps it records the start."""
@@ -303,7 +303,7 @@ def advance(
         row = 0 if kind.two_way else 2 * step
         if not on_surface(0.5 * dt if kind.normal_law == SPRING else 0.0, chain, bodies):
             return OFF_PIECES
-        if not kind.two_way:
+        if response is None:
             move_surface(row, step, dt, kind, chain, bodies)
             solve(dt, kind, bodies, response, journal.balance[0])
         elif not step_coupled(step, dt, kind, chain, bodies, response, journal):

@@ -6,7 +6,7 @@ from verify.jit import inline, jit, once
 
 
 @once
-def following_mass(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+def following_mass(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> float:
     """Normal force of a mass that has the speed of the surface at the end of the step: momentum of the step.
 
     Contact forces change that speed by `couplings`; the own part is taken to the left side.
@@ -14,7 +14,7 @@ def following_mass(i: int, dt: float, kind: Kind, bodies: Bodies, response: Resp
     point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
     inertia, own = point.mass / dt, 0.0
     vz = contact.slope_vz * (slider.v + slider.delta_v - contact.v_end) + contact.closing
-    if kind.normal_two_way:
+    if response is not None:
         own = response.couplings[1, i, i]
         for j in range(bodies.points.shape[0]):
             other = bodies.contacts[j]
@@ -31,7 +31,7 @@ def closing_speed(point: Record, contact: Record, foot: Record) -> float:
 
 
 @once
-def spring_and_dashpot(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+def spring_and_dashpot(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> float:
     """Normal force of a point of a foot: the spring at mid-step and the dashpot by the mean speed, with its response.
 
     In the step in which a point lands the dashpot acts from the landing on: from `depth`/(`depth` - before) of a step
@@ -46,7 +46,7 @@ def spring_and_dashpot(i: int, dt: float, kind: Kind, bodies: Bodies, response: 
         dashpot *= 0.5 + depth / (depth - before) if before <= 0.0 else 1.0
         own = 0.5 * dt * (foot.inverse_mass + point.arm * point.arm * foot.inverse_inertia)
         closing = closing_speed(point, contact, foot)
-        if kind.normal_two_way:
+        if response is not None and kind.normal_two_way:
             closing += product(i, NORMAL, response)
             own += own_product(i, NORMAL, response.shapes)
         force = (force + dashpot * (closing + own * contact.normal)) / (1.0 + dashpot * own)
@@ -54,7 +54,7 @@ def spring_and_dashpot(i: int, dt: float, kind: Kind, bodies: Bodies, response: 
 
 
 @jit(no_cpython_wrapper=True)
-def set_normal_forces(every: bool, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+def set_normal_forces(every: bool, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> float:
     """Set the normal forces of points in contact and what they add to feet and columns; largest change, N.
 
     Of every point, or of those whose normal force depends on the forces of the step.
@@ -73,7 +73,7 @@ def set_normal_forces(every: bool, dt: float, kind: Kind, bodies: Bodies, respon
             normal = spring_and_dashpot(i, dt, kind, bodies, response)
         more = normal - contact.normal
         contact.normal = normal
-        if kind.normal_two_way and more != 0.0:
+        if response is not None and kind.normal_two_way and more != 0.0:
             add_response(i, NORMAL, more, response)
         if law == SPRING:
             foot, push = bodies.feet[point.foot], dt * point.face * more

@@ -73,14 +73,14 @@ def dissipating(force: float, slip: Slip, loss: float) -> float:
 
 
 @once
-def set_friction(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+def set_friction(i: int, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> float:
     """Set the friction of point i by its law with its own response, and what that adds to its slider and the columns.
 
     Returns the size of the change, N.
     """
     point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
     normal, others = max(contact.normal, 0.0), 0.0
-    if kind.two_way:
+    if response is not None:
         others = product(i, TANGENTIAL, response) + contact.self_response * contact.friction
     slip = slip_of(dt, others, kind, slider, contact)
     force = laws.force(slip, normal, slider, point, contact)
@@ -95,10 +95,10 @@ def set_friction(i: int, dt: float, kind: Kind, bodies: Bodies, response: Respon
 
 
 @inline
-def add_friction(i: int, more: float, dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
+def add_friction(i: int, more: float, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> None:
     """Add to the friction of point i, and what that adds to its slider and to the columns."""
     slider = bodies.sliders[bodies.points[i].slider]
     bodies.contacts[i].friction += more
     slider.delta_v += dt * slider.inverse_mass * more
-    if kind.two_way:
+    if response is not None:
         add_response(i, TANGENTIAL, more, response)

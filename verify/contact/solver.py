@@ -5,13 +5,15 @@ fixed; where the sweeps do not converge, the friction of all points is solved to
 without a response the points of a slider are one root.
 """
 
+import math
+
 from verify.contact.active_sets import SETTLED, revise_limits, solve_active_sets
 from verify.contact.normal import set_normal_forces
 from verify.contact.one_way import solve_one_way_friction
 from verify.contact.points import set_friction
 from verify.contact.response import TANGENTIAL, own_product, product
 from verify.contact.state import BILATERAL, HOLDS, SLIDES, SPRING, Bodies, Kind, Record, Response
-from verify.jit import jit, once
+from verify.jit import inline, jit, once
 
 SWEEPS = 24
 """Sweeps before the friction forces of a step are solved together: a third of the time of that solution."""
@@ -25,7 +27,7 @@ UNCONVERGED = 1e-9
 
 
 @once
-def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response) -> bool:
+def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> bool:
     """Set gains of speed by external forces and all contact forces to zero; whether forces depend on each other."""
     for b in range(bodies.sliders.shape[0]):
         slider = bodies.sliders[b]
@@ -34,26 +36,29 @@ def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response) -> b
         foot = bodies.feet[k]
         foot.delta_vz = dt * foot.inverse_mass * (foot.load - foot.spring_rate * foot.height)
         foot.delta_pitch_rate = 0.0
-    for j in range(len(response.rates)):
-        response.rates[j] = 0.0
+    if response is not None:
+        for j in range(len(response.rates)):
+            response.rates[j] = 0.0
     n = bodies.points.shape[0]
     coupled = kind.normal_law == BILATERAL or kind.several
     for i in range(n):
         contact = bodies.contacts[i]
         contact.friction_before, contact.sticks_before = contact.friction, contact.sticks
         contact.normal, contact.friction, contact.slip, contact.sticks, contact.holds = 0.0, 0.0, 0.0, 0.0, 0.0
-        contact.self_response = own_product(i, TANGENTIAL, response.shapes) if kind.two_way else 0.0
+        contact.self_response = 0.0
+        if response is not None:
+            contact.self_response = own_product(i, TANGENTIAL, response.shapes)
         contact.grip = HOLDS if contact.sticks_before > 0.0 else SLIDES
         coupled = coupled or bodies.points[i].dashpot > 0.0
     return coupled
 
 
 @once
-def sweep(first: bool, dt: float, kind: Kind, bodies: Bodies, response: Response) -> tuple[float, float]:
+def sweep(first: bool, dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> tuple[float, float]:
     """Set all forces once, one after the other; (largest change of a normal force, of any force), N."""
     normal = set_normal_forces(first, dt, kind, bodies, response)
     changed = normal
-    if kind.normal_law == SPRING and not kind.two_way:
+    if kind.normal_law == SPRING and response is None:
         return normal, changed  # friction is one root at the end
     for i in range(bodies.points.shape[0]):
         if kind.normal_law != SPRING or bodies.contacts[i].depth > 0.0:
@@ -62,38 +67,53 @@ def sweep(first: bool, dt: float, kind: Kind, bodies: Bodies, response: Response
 
 
 @once
-def end_forces(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
+def end_forces(dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> None:
     """Set the speed of the surface with all forces, sticking, and the energy that friction has dissipated."""
     for i in range(bodies.points.shape[0]):
         contact = bodies.contacts[i]
-        contact.surface = contact.mean + (product(i, TANGENTIAL, response) if kind.two_way else 0.0)
+        contact.surface = contact.mean
+        if response is not None:
+            contact.surface += product(i, TANGENTIAL, response)
         contact.surface_before = 2.0 * contact.surface - contact.mean
         contact.sticks = contact.holds if contact.normal > 0.0 else 0.0
         if bodies.points[i].tangential_stiffness == 0.0:
             contact.loss -= dt * contact.friction * contact.slip
 
 
+@inline
+def solve_together(largest: float, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+    """Friction of all points and the normal forces that depend on it, in turns; largest change of the last round, N."""
+    changed = math.inf
+    for _ in range(PASSES):
+        changed = solve_active_sets(dt, largest, kind, bodies, response)
+        normal = set_normal_forces(changed < 0.0, dt, kind, bodies, response)  # never; False would be compiled anew
+        changed = max(changed, normal)
+        if normal <= SETTLED * largest:
+            break
+    return changed
+
+
 @jit(no_cpython_wrapper=True)
-def solve(dt: float, kind: Kind, bodies: Bodies, response: Response, balance: Record) -> None:
-    """Contact forces of the step, and what they add to sliders, feet and the columns (`response.rates`)."""
+def solve(dt: float, kind: Kind, bodies: Bodies, response: Response | None, balance: Record) -> None:
+    """Contact forces of the step, and what they add to sliders, feet and the columns (`response.rates`).
+
+    `response` is None of a surface that does not respond: numba then leaves out all that needs one.
+    """
     n, coupled = bodies.points.shape[0], begin_forces(dt, kind, bodies, response)
-    largest, sweeps, changed = 0.0, 0, 0.0
-    while True:
+    largest, sweeps, changed, revised = 0.0, 0, 0.0, True
+    while revised:
+        revised = False
         for _ in range(SWEEPS):
             normal, changed = sweep(sweeps == 0, dt, kind, bodies, response)
             sweeps, largest = sweeps + 1, max(largest, normal)  # the first change is the largest force
             if changed <= TOLERANCE * largest or not coupled:
                 changed = 0.0
                 break
-        for _ in range(PASSES if changed > 0.0 and kind.two_way else 0):
-            changed = solve_active_sets(dt, largest, kind, bodies, response)
-            normal = set_normal_forces(sweeps == 0, dt, kind, bodies, response)  # a constant would be compiled anew
-            changed = max(changed, normal)
-            if normal <= SETTLED * largest:
-                break
-        if not kind.several or not revise_limits(dt, kind, bodies):
-            break
-    if kind.normal_law == SPRING and not kind.two_way:
+        if response is not None:
+            if changed > 0.0:
+                changed = solve_together(largest, dt, kind, bodies, response)
+            revised = kind.several and revise_limits(dt, kind, bodies)
+    if kind.normal_law == SPRING and response is None:
         for i in range(n):
             if i + 1 == n or bodies.points[i + 1].slider != bodies.points[i].slider:
                 changed = max(changed, solve_one_way_friction(i, dt, kind, bodies))

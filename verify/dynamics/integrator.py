@@ -108,7 +108,7 @@ def end_bodies(dt: float, kind: Kind, bodies: Bodies) -> None:
 
 
 @once
-def close_step(time: float, dt: float, kind: Kind, bodies: Bodies, response: Response, journal: Journal) -> None:
+def close_step(time: float, dt: float, kind: Kind, bodies: Bodies, response: Response | None, journal: Journal) -> None:
     """Sums of the step that begins at `time`, its bodies at the end of it, its events."""
     add_sums(dt, kind, bodies, response, journal)
     end_bodies(dt, kind, bodies)
@@ -118,7 +118,14 @@ def close_step(time: float, dt: float, kind: Kind, bodies: Bodies, response: Res
 
 @once
 def advance_beam(
-    last: int, time: float, dt: float, kind: Kind, beam: Beam, accounts: Accounts, journal: Journal
+    last: int,
+    time: float,
+    dt: float,
+    kind: Kind,
+    beam: Beam,
+    response: Response | None,
+    accounts: Accounts,
+    journal: Journal,
 ) -> None:
     """Factors at all instants of a step without its contact forces; `last` is END."""
     for when in range(last + 1):
@@ -129,7 +136,7 @@ def advance_beam(
             set_factors(when, time + AHEAD[when] * dt, beam)
         if accounts.kept:
             add_powers(when, dt * POWERS[when], time + AHEAD[when] * dt, beam, accounts, journal)
-    if kind.two_way:
+    if response is not None:
         filter_rates(dt, beam)
     set_mean_rates(dt, kind.normal_law == SPRING, beam.surface.factors)
 
@@ -166,7 +173,7 @@ def advance(
     kind: Kind,
     beam: Beam,
     bodies: Bodies,
-    response: Response,
+    response: Response | None,
     accounts: Accounts,
     journal: Journal,
 ) -> int:
@@ -185,19 +192,19 @@ def advance(
         step, time = progress.step, progress.step * dt
         if not find_pieces(0.5 * dt if spring else 0.0, surface.edges, bodies):
             return OFF_PIECES
-        advance_beam(last, time, dt, kind, beam, accounts, journal)
+        advance_beam(last, time, dt, kind, beam, response, accounts, journal)
         begin_bodies(dt, spring, bodies)
         evaluate_step(step, dt, kind, beam, bodies)
-        if kind.two_way:
+        if response is not None:
             set_response(dt, kind, beam, bodies, response)
         solve(dt, kind, bodies, response, journal.balance[0])
-        if kind.two_way:
+        if response is not None:
             apply_forces(kind, beam, bodies, response.shapes)
             set_factors(last, time + dt, beam)
         close_step(beam.harmonic.origin + time, dt, kind, bodies, response, journal)
         if accounts.kept:
             add_powers(last, dt * POWERS[MIDDLE], time + dt, beam, accounts, journal)
-        if kind.two_way:
+        if response is not None:
             filter_rates(dt, beam)
         shift_factors(surface.factors)
         if not math.isfinite(bodies.sliders[0].v + surface.factors[START, VALUE, 0]):

@@ -26,7 +26,14 @@ from verify.jit import inline, jit, once
 
 @once
 def add_point(
-    i: int, dt: float, mean: float, kind: Kind, bodies: Bodies, response: Response, total: Record, balance: Record
+    i: int,
+    dt: float,
+    mean: float,
+    kind: Kind,
+    bodies: Bodies,
+    response: Response | None,
+    total: Record,
+    balance: Record,
 ) -> None:
     """Add works and losses of a point in contact; `mean` is the mean speed of its slider, m/s."""
     point, contact = bodies.points[i], bodies.contacts[i]
@@ -40,18 +47,18 @@ def add_point(
             total.slope_work += dt * push * contact.slope * mean * bodies.sliders[point.slider].free
         total.max_fall = max(total.max_fall, fall)
     vz = contact.vz
-    if kind.normal_two_way:
+    if response is not None and kind.normal_two_way:
         answer = product(i, NORMAL, response)
         vz += point.face * answer
         if spring:
             contact.closing += answer
             contact.vz = vz
-    loss = dt * (contact.power if spring and not kind.two_way else -force * contact.slip)
+    loss = dt * (contact.power if spring and response is None else -force * contact.slip)
     total.friction_loss += loss
     total.tangential_work += loss + dt * force * mean
     if loss < 0.0 and point.tangential_stiffness == 0.0:
         balance.created -= loss
-    if kind.two_way:
+    if response is not None:
         total.friction_on_beam -= dt * point.weight * force * contact.surface
     if kind.normal_two_way or spring:
         across = dt * push * point.face * (vz - slope_vz)
@@ -64,7 +71,7 @@ def add_point(
 
 
 @jit(no_cpython_wrapper=True)
-def add_sums(dt: float, kind: Kind, bodies: Bodies, response: Response, journal: Journal) -> None:
+def add_sums(dt: float, kind: Kind, bodies: Bodies, response: Response | None, journal: Journal) -> None:
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
     spring = kind.normal_law == SPRING
     for b in range(bodies.sliders.shape[0]):

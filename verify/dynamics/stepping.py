@@ -208,7 +208,9 @@ class Run:
                 self.stopped = stage.beyond(float(x.min()), float(x.max()))
         return self.z
 
-    def _march(self, stage: Stage, beam: Beam, response: Response, accounts: Accounts, progress: Progress) -> int:
+    def _march(
+        self, stage: Stage, beam: Beam, response: Response | None, accounts: Accounts, progress: Progress
+    ) -> int:
         """Chunks of steps on one table; why they end."""
         from verify.dynamics.impact import Ground, advance_impacts
         from verify.dynamics.integrator import advance
@@ -275,9 +277,11 @@ class Run:
         journal.progress["step"], journal.progress["samples"] = stage.steps.n, row + len(rest)
 
 
-def response_of(assembly: Assembly, columns: int) -> Response:
-    """Working space of the response of a beam of so many columns."""
-    n, columns = len(assembly.points), columns if assembly.kind.two_way else 0
+def response_of(assembly: Assembly, columns: int) -> Response | None:
+    """Working space of the response of a beam of so many columns; None with one-way coupling."""
+    n = len(assembly.points)
+    if not assembly.kind.two_way:
+        return None
     return Response(np.zeros((4, n, columns)), np.zeros(columns), np.zeros((2, n, n)), np.zeros((n, n + 1)))
 
 
