@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from verify.bench import Method, Question, Row, measure, result, time_at
-from verify.bench.methods import Problem, questions
+from verify.bench.methods import Problem, engines_slider, questions
 from verify.cli import status_of
+from verify.engines import ENGINES, missing
 from verify.errors import InputError
+from verify.problem.beam import PointForce
+from verify.problem.slider import Slider
 
 
 def rows_of(name, exponent, cost, sizes=(10, 20, 40, 80)):
@@ -95,6 +98,21 @@ def test_engines_agree_where_they_are_installed():
     question = next(questions(["engines"], Problem(mode=3, sizes=(49,))))
     errors = {row.method: row.error for row in measure(question, limit=0.1) if row.size == 49}
     assert errors["MuJoCo"] == pytest.approx(errors["segments"], rel=1e-4)
+
+
+SLIDER = Slider(mass=7.3e-4, mu=0.31, slope=6e3, position=0.2071, speed=-1.3e-5, preload=2.7e-3)
+FORCES = (PointForce(position=0.0371, amplitude=0.7), PointForce(position=0.4519, amplitude=1.3, phase_deg=71.0))
+
+
+def test_sliders_on_chains_of_engines_converge_to_the_same_displacement():
+    problem = Problem(forces=FORCES, frequency_hz=3319.0, slider=SLIDER, duration=1.3e-3, mode=3, sizes=(24,))
+    if not (adapters := {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}):
+        pytest.skip("no engine is installed")
+    question = engines_slider(problem, adapters, 49, "")
+    for method in question.methods:
+        coarse, fine = (question.error(method.run(method.sizes[k])) for k in (0, -1))
+        assert fine < 7e-4, method.name
+        assert fine < 0.05 * coarse, method.name
 
 
 def test_command_prints_rows(capsys):

@@ -19,8 +19,8 @@ FORCES = (
 )
 """The first and the last on one link of 13, none on a joint."""
 FREQUENCY, END = 1234.5, 2e-3
-STEPS = {"Exudyn": 500, "MuJoCo": 50}
-ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2)}
+STEPS = {"Exudyn": 500, "MuJoCo": 50, "Pinocchio": 50}
+ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2), "Pinocchio": (3.7, 5.2)}
 
 
 @pytest.fixture
@@ -45,7 +45,8 @@ def relative_rms(values, exact):
 
 
 def test_forces_are_on_their_links_with_their_phases(chain):
-    assert chain.locate(0.0731) == (1, pytest.approx(0.0731 - 0.73 / 13, rel=1e-12))
+    beyond = 0.0731 * 13 / 0.73 - 1.0
+    assert chain.shares[0, :4] == pytest.approx([0.0, 1.0 - beyond, beyond, 0.0], abs=1e-12)
     phases = 2 * np.pi * FREQUENCY * 1.3e-4 + np.radians([-37.0, 71.0, 160.0])
     assert chain.force_values(1.3e-4) == pytest.approx([0.013, 0.021, 0.005] * np.cos(phases), rel=1e-12)
 
@@ -80,12 +81,26 @@ def test_engine_frequencies_are_the_chains(engine, chain, titanium_strip):
 def test_engine_converges_at_its_order(engine, chain, system):
     steps = STEPS[engine.name]
     runs = [engine.adapter().run(chain, n, END) for n in (steps, 2 * steps)]
-    errors = [relative_rms(run.deflection, linear_deflection(system, run.times, 0.365)) for run in runs]
+    errors = [
+        relative_rms(chain.deflection(run.angles, 0.365), linear_deflection(system, run.times, 0.365)) for run in runs
+    ]
     low, high = ORDERS[engine.name]
     assert low < np.log2(errors[0] / errors[1]) < high
     assert errors[1] < 1e-3
     assert [run.failure for run in runs] == ["", ""]
-    assert runs[1].steps == pytest.approx(2 * steps, abs=1)
+    assert len(runs[1].times) == 2 * steps + 1
+
+
+def test_rule_of_one_stage_has_order_two_from_a_soft_start(engine, titanium_strip):
+    chain = chain_of(titanium_strip, 13, FORCES, FREQUENCY, load="reciprocal", soft_start_periods=1.7)
+    fine = engine.adapter().run(chain, 3200, END)
+    errors = []
+    for part in (8, 4):
+        run = engine.adapter().run(chain, 3200 // part, END, order=2)
+        turns = [relative_rms(getattr(run, name)[:, 6], getattr(fine, name)[::part, 6]) for name in ("angles", "rates")]
+        errors.append(max(turns))
+    assert 1.9 < np.log2(errors[0] / errors[1]) < 2.2
+    assert errors[1] < 1e-2
 
 
 def test_unstable_step_is_reported(engine, chain, system, capfd):

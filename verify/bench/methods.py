@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, sqrt
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
-from verify.chain.benchmarks import linear_deflection
+from verify.chain.benchmarks import departure, linear_deflection
 from verify.chain.kinematics import at_rest
 from verify.chain.motion import simulate as simulate_chain
 from verify.chain.motion import step_limit
@@ -29,7 +29,7 @@ from verify.problem.slider import Slider
 
 SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}
-LINKS = 49
+LINKS, SLIDER_LINKS = 49, (49, 399)
 SOFT_START = 2.0  # periods over which forces grow: a step load has no integer order of convergence
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FORCES = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
@@ -169,14 +169,13 @@ def ride(problem: Problem) -> Iterator[Question]:
 
 def chain_solver(problem: Problem) -> tuple[Callable[..., tuple[Array, Array]], float]:
     """(settings -> times and mid-span deflections of the nonlinear chain from rest, step limit of RK4)."""
-    system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
-    start, x = at_rest(system), 0.5 * problem.beam.length
 
     def run(samples: int = 200, **how: Any) -> tuple[Array, Array]:
-        times = np.linspace(0.0, problem.duration, samples + 1)[1:]
-        return times, simulate_chain(system, start, times, **how).deflection([x], reading="links")[:, 0]
+        system = build_system(problem.beam, LINKS, problem.forces, problem.frequency_hz)
+        times, middle = np.linspace(0.0, problem.duration, samples + 1)[1:], [0.5 * problem.beam.length]
+        return times, simulate_chain(system, at_rest(system), times, **how).deflection(middle, reading="links")[:, 0]
 
-    return run, step_limit(system)
+    return run, step_limit(build_system(problem.beam, LINKS))
 
 
 def chain_methods(problem: Problem) -> tuple[list[Method], Callable[[tuple[Array, Array]], float], float]:
@@ -207,10 +206,11 @@ def chain(problem: Problem) -> Iterator[Question]:
 
 
 def engines(problem: Problem) -> Iterator[Question]:
-    """Modes and the nonlinear chain in other engines and with segments."""
+    """Modes, the nonlinear chain and a slider in other engines and with segments."""
     adapters = {name: one.adapter() for name, one in ENGINES.items() if not missing(one)}
     if not adapters:
-        raise InputError("engines: none is installed: pip install exudyn mujoco, or leave this set out")
+        raise InputError("engines: none is installed: pip install exudyn mujoco pin, or leave this set out")
+    absent = "".join(f"; {why}" for one in ENGINES.values() if (why := missing(one)))
     beam, mode, hertz, end = problem.beam, problem.mode, problem.frequency_hz, problem.duration
     exact = ExactModel(beam).frequency_hz(mode)
 
@@ -222,30 +222,82 @@ def engines(problem: Problem) -> Iterator[Question]:
 
     ours = Method("segments", own, problem.sizes[:4])
     theirs = [Method(name, frequency(adapter), problem.sizes[:4]) for name, adapter in adapters.items()]
-    title = f"frequency of mode {mode}"
+    title = f"frequency of mode {mode}{absent}"
     yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])
 
     links = chain_of(beam, LINKS, problem.forces, hertz)
     _, limit = chain_solver(problem)
 
-    def steps(name: str) -> list[int]:
-        longest = 0.01 / hertz if ENGINES[name].implicit else min(1.0 / (12.0 * hertz), 0.99 * limit)
-        return [ceil(end / longest) * 2**k for k in range(6)]
-
     def motion(adapter: Any) -> Callable[[int], Any]:
         def run(count: int) -> Any:
-            result = adapter.run(links, count, end)
-            if result.failure:
-                raise InputError(f"engines: {result.failure}")
-            return result.times, result.deflection
+            result = finished(adapter.run(links, count, end))
+            return result.times[1:], links.deflection(result.angles[1:], 0.5 * beam.length)
 
         return run
 
     methods, error, uncertainty = chain_methods(problem)
     methods = [dataclasses.replace(one, name=f"segments, {one.name}") for one in methods]
-    methods += [Method(name, motion(adapter), steps(name), "steps") for name, adapter in adapters.items()]
-    title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}"
+    sizes = [step_counts(name, problem, limit) for name in adapters]
+    methods += [Method(*one, "steps") for one in zip(adapters, map(motion, adapters.values()), sizes, strict=True)]
+    title = f"mid-span deflection, rms over time, {LINKS} links, step load, {problem.name}{absent}"
     yield Question("engines-chain", title, "adaptive steps at 1e-10", uncertainty, error, methods)
+    if problem.slider.law == "tanh" and problem.slider.contact is None:
+        for count in SLIDER_LINKS:
+            yield engines_slider(problem, adapters, count, absent)
+
+
+def step_counts(engine: str, problem: Problem, limit: float) -> list[int]:
+    """Numbers of steps of an engine: from the longest step that is stable, or has a meaning, down by halves."""
+    hertz, implicit = problem.frequency_hz, ENGINES[engine].implicit
+    longest = 0.02 / hertz if implicit else min(1.0 / (12.0 * hertz), 0.97 * limit)
+    return [ceil(problem.duration / longest) * 2**k for k in range(7 if implicit else 6)]
+
+
+def finished(run: Any) -> Any:
+    """The run of an engine. Raises InputError if it failed."""
+    if run.failure:
+        raise InputError(f"engines: {run.failure}")
+    return run
+
+
+def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absent: str) -> Question:
+    """Displacement of a one-way slider on `count` links over time, by time step; reference: 2048 steps a period.
+
+    Joints take the forces by the reciprocal rule in all. Where the stability of RK4 demands less than a 400th of a
+    period explicit engines use a rule of order 2 and one stage, in steps of 1 / sqrt(2) of that limit.
+    """
+    from verify.engines.slider import displacement
+
+    beam, hertz, end = problem.beam, problem.frequency_hz, problem.duration
+    one = replace(problem.slider, coupling="one-way")
+    links = chain_of(beam, count, problem.forces, hertz, load="reciprocal", soft_start_periods=SOFT_START)
+    limit = step_limit(build_system(beam, count))
+    order, longest, most = (4, limit, 4) if limit * hertz > 1.0 / 400.0 else (2, limit / sqrt(2.0), 1)
+
+    def own(per_period: int, samples: int = 41) -> tuple[Array, Array]:
+        more: dict[str, Any] = {"step": 1.0 / (hertz * per_period), "keep": Keep(samples=samples)}
+        run = moved(problem, "segment", count, slider=one, **more)
+        return run.times, run.travelled
+
+    def method(name: str) -> Method:
+        def run(steps: int) -> tuple[Array, Array]:
+            return displacement(links, finished(adapters[name].run(links, steps, end, order)), one)
+
+        return Method(name, run, step_counts(name, problem, longest)[: 4 if ENGINES[name].implicit else most], "steps")
+
+    spline = CubicSpline(*own(2048, 2001))
+
+    def error(result: tuple[Array, Array]) -> float:
+        return rms(result[1], spline(result[0]))
+
+    methods = [
+        Method("segments", own, (16, 32, 64, 128, 256), "steps / period", "segment"),
+        Method("segments, modes known", own, (16, 32, 64, 128, 256), "steps / period", again=True),
+        *map(method, adapters),
+    ]
+    gap = departure(beam, problem.forces, hertz, end, LINKS, x=one.initial_position(beam)).rms
+    title = f"displacement, one-way, rms over time, {count} links, {problem.name}{absent}"
+    return Question(f"engines-slider-{count}", title, "linear chain, 2048 steps a period", gap, error, methods)
 
 
 _ALL: tuple[Callable[[Problem], Iterator[Question]], ...] = modes, field, transient, slider, ride, chain, engines

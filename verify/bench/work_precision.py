@@ -37,6 +37,7 @@ class Method:
     size_name: str = "N"  # name of the size: N, dt, tolerance; empty without refinement
     model: str = ""  # name of the model, which defines the colour
     error: Callable[[Any], float] | None = None  # relative error of a result; default: that of the question
+    again: bool = False  # whether the time is that of a second run, which has the cached solutions of the first
 
 
 @dataclass(frozen=True)
@@ -68,10 +69,11 @@ class Row:
 def measure(question: Question, limit: float = 5.0) -> list[Row]:
     """Rows of all methods.
 
-    A method whose runs have taken `limit` seconds is not refined further; rounds end after the same time. Sizes at
-    which a method raises InputError have no row.
+    A method whose runs have taken `limit` seconds is not refined further; rounds end after the same time, and a run
+    that takes longer has one. Sizes at which a method raises InputError have no row.
     """
     jobs: list[tuple[Method, Any, float, int]] = []
+    times = list[list[float]]()
     for method in question.methods:
         spent = 0.0
         for size in method.sizes:
@@ -81,32 +83,35 @@ def measure(question: Question, limit: float = 5.0) -> list[Row]:
                 continue
             seconds = _timed(method, size, 1)
             jobs.append((method, size, abs(error), min(max(round(TURN_S / max(seconds, 1e-9)), 1), 20)))
+            times.append([seconds])
             spent += seconds
             if spent > limit:
                 break
-    times: list[list[float]] = [[] for _ in jobs]
     start = process_time()
-    for turn in range(ROUNDS):
+    for turn in range(1, ROUNDS):
         if turn >= 3 and process_time() - start > limit:
             break
         for (method, size, _, repeats), own in zip(jobs, times, strict=True):
-            own.append(_timed(method, size, repeats))
+            if own[0] <= limit:
+                own.append(_timed(method, size, repeats))
     rows, floor = list[Row](), ABOVE_REFERENCE * question.uncertainty
     for (m, size, error, _), own in zip(jobs, times, strict=True):
         order, before = None, rows[-1] if rows else None
         if before and before.method == m.name and min(error, before.error) > floor and before.size != size:
             order = log(before.error / error) / abs(log(before.size / size))
-        low, _, high = quantiles(own, n=4, method="inclusive")
+        low, _, high = quantiles(own if own[1:] else own * 2, n=4, method="inclusive")
         spread = (high - low) / median(own)
         rows.append(Row(m.name, m.size_name, float(size), error, order, median(own), spread, m.model))
     return rows
 
 
 def _timed(method: Method, size: Any, repeats: int) -> float:
-    """Mean processor time of a run without cached results, s."""
+    """Mean processor time of a run without cached results, or `again` with them, s."""
     total = 0.0
     for _ in range(repeats):
         forget()
+        if method.again:
+            method.run(size)
         start = process_time()
         method.run(size)
         total += process_time() - start

@@ -75,7 +75,7 @@ def environment() -> dict[str, str]:
 
     values = {"date": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"), **versions()}
     values["system"] = f"{platform.system()} {platform.machine()}"
-    for name in ("matplotlib", "exudyn", "mujoco"):
+    for name in ("matplotlib", "exudyn", "mujoco", "pin"):
         with suppress(PackageNotFoundError):  # the engines are optional
             values[name] = version(name)
     return values
