@@ -74,7 +74,7 @@ class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
         """Tables of the energy balance, see `integrator.add_powers`."""
         drive = self.vectors @ forced.forward + self.vectors.conj() @ forced.backward
         table = [self.forces.real, self.forces.imag, self.damping, np.arange(len(drive)) >= self.modes]
-        return np.hstack([self.vectors.real, self.vectors.imag, interleaved(drive)]), np.array(table)
+        return np.vstack([self.vectors.real.T, self.vectors.imag.T, interleaved(drive).T]), np.array(table)
 
 
 def check_circuits(beam: Beam, circuits: Sequence[Mounted], omega: float) -> None:

@@ -60,7 +60,7 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def accounts(self, forced: "Forced") -> tuple[Array, Array]:
         """Tables of the energy balance, see `integrator.add_powers`."""
         table = np.array([self.loads.real, self.loads.imag, -2.0 * self.rates.real, 0.0 * self.rates.real])
-        return interleaved(forced.forward + forced.backward), table
+        return np.ascontiguousarray(interleaved(forced.forward + forced.backward).T), table
 
     def of_state(self, q: Array, rates: Array) -> ComplexArray:
         """State z of modes with amplitudes q and rates dq/dt, (n,): Re z = q, Re(lambda z) = dq/dt."""

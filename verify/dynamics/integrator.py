@@ -38,21 +38,25 @@ AT_REST = 1e-13
 @inline(fastmath=FAST)
 def add_powers(when: int, weight: float, time: float, beam: Beam, accounts: Accounts, journal: Journal) -> None:
     """Add the drive's power and the loss of all coordinates, with a weight in seconds, to the balance."""
-    harmonic, forced, loads, balance = beam.harmonic, accounts.forced, accounts.loads, journal.balance[0]
-    angle, part, grown = harmonic.omega * (harmonic.origin + time), time / harmonic.unit, 0.0
-    rates = beam.surface.factors[when, RATE]
-    c, s, first = math.cos(angle), math.sin(angle), len(rates) - forced.shape[1]
+    harmonic, forced, loads, rates = beam.harmonic, accounts.forced, accounts.loads, accounts.rates
+    factors, balance, grown = beam.surface.factors, journal.balance[0], 0.0
+    angle, part = harmonic.omega * (harmonic.origin + time), time / harmonic.unit
+    c, s, first = math.cos(angle), math.sin(angle), factors.shape[2] - forced.shape[0]
     for d in range(len(accounts.growth) - 1, -1, -1):
         grown = grown * part + accounts.growth[d]
+    for j in range(len(rates)):
+        rates[j] = factors[when, RATE, j] if first > 0 else 0.0
+    for d in range(forced.shape[0]):
+        rate = factors[when, RATE, first + d]
+        for j in range(len(rates)):
+            rates[j] += forced[d, j] * rate
     driven, lost, resisted = 0.0, 0.0, 0.0
-    for j in range(forced.shape[0]):
-        rate = rates[j] if first > 0 else 0.0
-        for d in range(forced.shape[1]):
-            rate += forced[j, d] * rates[first + d]
-        driven += grown * (loads[0, j] * c - loads[1, j] * s) * rate
-        lost += loads[2, j] * rate * rate
-        resisted += loads[3, j] * loads[2, j] * rate * rate
-    balance.driven += weight * driven
+    for j in range(len(rates)):
+        loss = loads[2, j] * rates[j] * rates[j]
+        driven += (loads[0, j] * c - loads[1, j] * s) * rates[j]
+        lost += loss
+        resisted += loads[3, j] * loss
+    balance.driven += weight * grown * driven
     balance.lost += weight * lost
     balance.resisted += weight * resisted
 

@@ -18,7 +18,7 @@ from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
 from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
 from verify.dynamics.state import SAMPLE
-from verify.dynamics.stepping import Assembly, Run, run_stages
+from verify.dynamics.stepping import Assembly, Run, of_all, run_stages
 from verify.errors import InputError
 from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
@@ -145,15 +145,15 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
         Raises InputError for a residual of the energy balance above its tolerance.
         """
-        request, stages, start = self.request, self.stages, self._initial()
+        request, stages, (assembly, z) = self.request, self.stages, self._initial()
         if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
-            return self._checked(self.run(stages, *start, progress))
+            return self._checked(self.run(stages, assembly, z, progress))
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
         rough = step_control.stepped(stages, 2.0 * dt, closer)
         close = [one.stepped(0.5 * of.steps.dt, closer) for one, of in zip(stages, rough, strict=True)]  # samples fit
-        coarse = self.run(rough, *start, lambda part: progress(part / 3.0))
-        fine = self.run(close, *start, lambda part: progress((1.0 + 2.0 * part) / 3.0))
+        coarse = self.run(rough, assembly.copy(), z, lambda part: progress(part / 3.0))
+        fine = self.run(close, assembly, z, lambda part: progress((1.0 + 2.0 * part) / 3.0))
         moved, cost = step_control.change(coarse, fine), coarse.statistics
         note = f"step: not converged, doubling it changes the slider's displacement by {100.0 * moved:.2g} %"
         statistics = replace(
@@ -181,8 +181,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return replace(motion, notes=(*motion.notes, *notes))
 
     def run(self, stages: list[Stage], assembly: Assembly, z: ComplexArray, progress: Progress) -> Motion:
-        """One run through these stages from an initial state of assembly and free rows."""
-        began, request, assembly = perf_counter(), self.request, assembly.copy()
+        """One run through these stages from an initial state of the assembly, which is advanced, and of free rows."""
+        began, request = perf_counter(), self.request
         kinetic = self._kinetic(assembly)
         recorded, deflection, beam, accounts = self._marched(stages, z, assembly, progress)
         gains = self._kinetic(assembly) - kinetic, float(recorded.journal.sums["stored"].sum()), *beam
@@ -317,7 +317,7 @@ def _statistics(recorded: Run, dt: float, wall: float) -> Statistics:
 def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
     """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
     sums, (slider, stored, kinetic, elastic, initial) = recorded.journal.sums, gains
-    works, balance = {name: float(sums[name].sum()) for name in sums.dtype.names or ()}, recorded.balance
+    works, balance = of_all(sums), recorded.balance
     load = works["external_work"] + works["load_work"]
     work = works["normal_work"] + works["tangential_work"] + works["slope_work"] + load
     residual = work - works["friction_loss"] - works["contact_loss"] - slider - stored

@@ -81,12 +81,14 @@ class Accounts(NamedTuple):
 
     kept: bool
     forced: Array
-    """(n, drive columns): coordinates over the drive's factors, added to those of the rows themselves; with circuits
-    over the factors of all columns, (coordinates, columns)."""
+    """(drive columns, n): coordinates over the drive's factors, added to those of the rows themselves; with circuits
+    over the factors of all columns, (columns, coordinates)."""
     loads: Array
     """(4, coordinates): generalised force phasors, real and imaginary, damping, and 1 of a circuit."""
     growth: Array
     """Envelope of the forces, ascending powers of t/T."""
+    rates: Array
+    """(coordinates,), working space."""
 
 
 SUMS = record(

@@ -144,7 +144,7 @@ class Run:
     @property
     def balance(self) -> dict[str, float]:
         """The record BALANCE."""
-        return dict(zip(BALANCE.names or (), map(float, self.journal.balance[0]), strict=True))
+        return of_all(self.journal.balance)
 
     @property
     def events(self) -> Array:
@@ -178,9 +178,11 @@ class Run:
         """Advance one stage from free rows z in chunks; the free rows at its end. Sets `stopped`."""
         began, n, rows, self.journal.progress["step"] = thread_time(), len(z), rows_of(stage, z), 0
         columns = n + stage.complex_rows + 2 * stage.powers
-        kept = Accounts(accounts, np.zeros((0, 2 * stage.powers)), np.zeros((4, 0)), np.zeros(0))
+        forced, loads, growth = np.zeros((2 * stage.powers, 0)), np.zeros((4, 0)), np.zeros(0)
         if accounts and stage.forced is not None:
-            kept = Accounts(True, *stage.rows.accounts(stage.forced), np.array(stage.envelope, dtype=float))
+            forced, loads = stage.rows.accounts(stage.forced)
+            growth = np.array(stage.envelope, dtype=float)
+        kept = Accounts(accounts, forced, loads, growth, np.zeros(loads.shape[1]))
         if self.journal.deflections.shape[1]:
             self.journal = self.journal._replace(places=np.ascontiguousarray(stage.outputs(places).T))
         response = response_of(self.assembly, n + stage.complex_rows)
@@ -217,7 +219,6 @@ class Run:
 
         steps, kind, bodies, before, reason = stage.steps, self.assembly.kind, self.assembly.bodies, self.n_steps, DONE
         hard, begun = self.assembly.restitution, self.step
-        ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
         if not self.journal.progress["samples"][0]:
             if hard is None:
                 advance(0, 1, steps.dt, kind, beam, bodies, response, accounts, self.journal)
@@ -227,6 +228,7 @@ class Run:
             if hard is None:
                 reason = advance(n, steps.every, steps.dt, kind, beam, bodies, response, accounts, self.journal)
             else:
+                ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
                 reason = advance_impacts(n, steps.every, steps.dt, hard, kind, ground, bodies, self.journal)
             self.loop_s += thread_time() - began
             self.n_steps = before + self.step - begun
@@ -275,6 +277,12 @@ class Run:
         sliders["x"] += (stage.steps.n - begun) * dt * sliders["v"]
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
         journal.progress["step"], journal.progress["samples"] = stage.steps.n, row + len(rest)
+
+
+def of_all(records: Records) -> dict[str, float]:
+    """Sums of the fields of records of floats, by name."""
+    values = records.view(np.float64).reshape(len(records), -1).sum(axis=0)
+    return dict(zip(records.dtype.names or (), values.tolist(), strict=True))
 
 
 def response_of(assembly: Assembly, columns: int) -> Response | None:
