@@ -4,8 +4,8 @@ import math
 
 from verify.arrays import Array
 from verify.contact.state import Bodies, Kind
-from verify.dynamics.state import END, HALF, MIDDLE, RATE, START, VALUE, Beam, Rows
-from verify.jit import FAST, inline
+from verify.dynamics.state import END, HALF, MIDDLE, RATE, START, VALUE, Beam, Harmonic, Rows
+from verify.jit import FAST, inline, once
 
 
 @inline(fastmath=FAST)
@@ -18,27 +18,40 @@ def rotate_half(rows: Rows) -> None:
 
 
 @inline(fastmath=FAST)
-def set_factors(when: int, time: float, beam: Beam) -> None:
-    """Factors of all columns and their rates at a time of the stage, s."""
-    rows, values, rates = beam.rows, beam.surface.factors[when, VALUE], beam.surface.factors[when, RATE]
-    n, omega, unit = len(rows.z_re), beam.harmonic.omega, beam.harmonic.unit
+def set_row_factors(n_complex: int, rows: Rows, values: Array, rates: Array) -> None:
+    """Factors of the columns of the rows and their rates."""
+    n = len(rows.z_re)
     for j in range(n):
         values[j] = rows.z_re[j]
         rates[j] = rows.rate_re[j] * rows.z_re[j] - rows.rate_im[j] * rows.z_im[j]
-    for k in range(beam.n_complex):
-        j = n - beam.n_complex + k
+    for k in range(n_complex):
+        j = n - n_complex + k
         values[n + k] = -rows.z_im[j]
         rates[n + k] = -rows.rate_re[j] * rows.z_im[j] - rows.rate_im[j] * rows.z_re[j]
-    angle = omega * (beam.harmonic.origin + time)
+
+
+@inline(fastmath=FAST)
+def set_drive_factors(first: int, time: float, harmonic: Harmonic, values: Array, rates: Array) -> None:
+    """Factors of the columns of the drive, from `first` on, and their rates at a time of the stage, s."""
+    omega, unit = harmonic.omega, harmonic.unit
+    angle = omega * (harmonic.origin + time)
     c, s = math.cos(angle), math.sin(angle)
     power, growth = 1.0, 0.0
-    for d in range((len(values) - n - beam.n_complex) // 2):
-        j = n + beam.n_complex + 2 * d
+    for d in range((len(values) - first) // 2):
+        j = first + 2 * d
         values[j], values[j + 1] = power * c, -power * s
         rates[j] = growth * c - power * omega * s
         rates[j + 1] = -growth * s - power * omega * c
         growth = (d + 1) * power / unit
         power = power * time / unit
+
+
+@once
+def set_factors(when: int, time: float, beam: Beam) -> None:
+    """Factors of all columns and their rates at a time of the stage, s."""
+    values, rates = beam.surface.factors[when, VALUE], beam.surface.factors[when, RATE]
+    set_row_factors(beam.n_complex, beam.rows, values, rates)
+    set_drive_factors(len(beam.rows.z_re) + beam.n_complex, time, beam.harmonic, values, rates)
 
 
 @inline(fastmath=FAST)
@@ -52,11 +65,11 @@ def set_mean_rates(dt: float, spring: bool, factors: Array) -> None:
 
 
 @inline(fastmath=FAST)
-def filter_rates(dt: float, beam: Beam) -> None:
+def filter_rates(dt: float, n_complex: int, coarse: Array, factors: Array) -> None:
     """Mean rates over the step in place of those at its end where a row is not resolved."""
-    n, factors = len(beam.rows.coarse), beam.surface.factors
-    for j in range(n + beam.n_complex):
-        if beam.rows.coarse[j if j < n else j - beam.n_complex] > 0.0:
+    n = len(coarse)
+    for j in range(n + n_complex):
+        if coarse[j if j < n else j - n_complex] > 0.0:
             factors[END, RATE, j] = (factors[END, VALUE, j] - factors[START, VALUE, j]) / dt
 
 

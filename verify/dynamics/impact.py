@@ -295,7 +295,7 @@ def advance_point(time: float, dt: float, ground: Ground, rigid: Rigid, bodies: 
                 contact.depth = RIDES if land(time, done + s, dt, ground, rigid, bodies, journal) else FLIES
         done += s
         if kind > 0.0:
-            add_event(ground.beam.harmonic.origin + time + done, kind, 0, bodies, journal)
+            add_event(ground.beam.harmonic.origin + time + done, kind, 0, bodies, journal.events, journal.progress[0])
     return dt - done <= 1e-15 * dt
 
 

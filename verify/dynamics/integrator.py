@@ -2,10 +2,11 @@
 
 import math
 
+from verify.arrays import Array
 from verify.contact import laws
 from verify.contact.points import slip_of
 from verify.contact.solver import solve
-from verify.contact.state import BILATERAL, SPRING, Bodies, Kind, Response
+from verify.contact.state import BILATERAL, SPRING, Bodies, Kind, Record, Response
 from verify.dynamics.columns import apply_forces, filter_rates, rotate_half, set_factors, set_mean_rates, shift_factors
 from verify.dynamics.recording import add_sums, sample, write_events
 from verify.dynamics.shapes import set_response
@@ -21,6 +22,7 @@ from verify.dynamics.state import (
     VALUE,
     Accounts,
     Beam,
+    Harmonic,
     Journal,
 )
 from verify.dynamics.surface import AHEAD, evaluate_surface, find_pieces
@@ -36,10 +38,11 @@ AT_REST = 1e-13
 
 
 @inline(fastmath=FAST)
-def add_powers(when: int, weight: float, time: float, beam: Beam, accounts: Accounts, journal: Journal) -> None:
+def add_powers(
+    when: int, weight: float, time: float, harmonic: Harmonic, factors: Array, accounts: Accounts, balance: Record
+) -> None:
     """Add the drive's power and the loss of all coordinates, with a weight in seconds, to the balance."""
-    harmonic, forced, loads, rates = beam.harmonic, accounts.forced, accounts.loads, accounts.rates
-    factors, balance, grown = beam.surface.factors, journal.balance[0], 0.0
+    forced, loads, rates, grown = accounts.forced, accounts.loads, accounts.rates, 0.0
     angle, part = harmonic.omega * (harmonic.origin + time), time / harmonic.unit
     c, s, first = math.cos(angle), math.sin(angle), factors.shape[2] - forced.shape[0]
     for d in range(len(accounts.growth) - 1, -1, -1):
@@ -114,9 +117,9 @@ def end_bodies(dt: float, kind: Kind, bodies: Bodies) -> None:
 @once
 def close_step(time: float, dt: float, kind: Kind, bodies: Bodies, response: Response | None, journal: Journal) -> None:
     """Sums of the step that begins at `time`, its bodies at the end of it, its events."""
-    add_sums(dt, kind, bodies, response, journal)
+    add_sums(dt, kind, bodies, response, journal.sums, journal.balance[0], journal.slider_of_foot)
     end_bodies(dt, kind, bodies)
-    write_events(time, dt, kind, bodies, journal)
+    write_events(time, dt, kind, bodies, journal.events, journal.progress[0])
     journal.progress[0].step += 1
 
 
@@ -132,6 +135,7 @@ def advance_beam(
     journal: Journal,
 ) -> None:
     """Factors at all instants of a step without its contact forces; `last` is END."""
+    factors, balance = beam.surface.factors, journal.balance[0]
     for when in range(last + 1):
         if when == MIDDLE:
             continue
@@ -139,9 +143,9 @@ def advance_beam(
             rotate_half(beam.rows)
             set_factors(when, time + AHEAD[when] * dt, beam)
         if accounts.kept:
-            add_powers(when, dt * POWERS[when], time + AHEAD[when] * dt, beam, accounts, journal)
+            add_powers(when, dt * POWERS[when], time + AHEAD[when] * dt, beam.harmonic, factors, accounts, balance)
     if response is not None:
-        filter_rates(dt, beam)
+        filter_rates(dt, beam.n_complex, beam.rows.coarse, beam.surface.factors)
     set_mean_rates(dt, kind.normal_law == SPRING, beam.surface.factors)
 
 
@@ -186,7 +190,7 @@ def advance(
     With no steps it records the initial state. Time is the number of the step times dt. All arrays are advanced in
     place, together, so that they agree whenever the caller is interrupted.
     """
-    surface, progress = beam.surface, journal.progress[0]
+    surface, progress, balance = beam.surface, journal.progress[0], journal.balance[0]
     spring, last = kind.normal_law == SPRING, surface.factors.shape[0] - 1  # a constant would be compiled once more
     set_factors(last, progress.step * dt, beam)
     shift_factors(surface.factors)
@@ -201,15 +205,17 @@ def advance(
         evaluate_step(step, dt, kind, beam, bodies)
         if response is not None:
             set_response(dt, kind, beam, bodies, response)
-        solve(dt, kind, bodies, response, journal.balance[0])
+        solve(dt, kind, bodies, response, balance)
         if response is not None:
             apply_forces(kind, beam, bodies, response.shapes)
             set_factors(last, time + dt, beam)
         close_step(beam.harmonic.origin + time, dt, kind, bodies, response, journal)
         if accounts.kept:
-            add_powers(last, dt * POWERS[MIDDLE], time + dt, beam, accounts, journal)
+            add_powers(
+                last, dt * POWERS[MIDDLE], time + dt, beam.harmonic, surface.factors, accounts, journal.balance[0]
+            )
         if response is not None:
-            filter_rates(dt, beam)
+            filter_rates(dt, beam.n_complex, beam.rows.coarse, surface.factors)
         shift_factors(surface.factors)
         if not math.isfinite(bodies.sliders[0].v + surface.factors[START, VALUE, 0]):
             return NOT_FINITE

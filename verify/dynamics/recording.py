@@ -2,7 +2,7 @@
 
 import math
 
-from verify.arrays import Array
+from verify.arrays import Array, Indices
 from verify.contact import laws
 from verify.contact.normal import closing_speed
 from verify.contact.response import NORMAL, product
@@ -18,6 +18,7 @@ from verify.contact.state import (
     Kind,
     Path,
     Record,
+    Records,
     Response,
 )
 from verify.dynamics.state import START, VALUE, Journal
@@ -71,11 +72,19 @@ def add_point(
 
 
 @jit(no_cpython_wrapper=True)
-def add_sums(dt: float, kind: Kind, bodies: Bodies, response: Response | None, journal: Journal) -> None:
+def add_sums(
+    dt: float,
+    kind: Kind,
+    bodies: Bodies,
+    response: Response | None,
+    sums: Records,
+    balance: Record,
+    slider_of_foot: Indices,
+) -> None:
     """Works, losses and integrals of the step; sliders and feet are still at its start."""
     spring = kind.normal_law == SPRING
     for b in range(bodies.sliders.shape[0]):
-        slider, total = bodies.sliders[b], journal.sums[b]
+        slider, total = bodies.sliders[b], sums[b]
         force, normal, surface, touching, sticking, n = 0.0, 0.0, 0.0, 0, 0, 0
         mean = slider.v + 0.5 * slider.delta_v
         for i in range(bodies.points.shape[0]):
@@ -85,7 +94,7 @@ def add_sums(dt: float, kind: Kind, bodies: Bodies, response: Response | None, j
             n += 1
             if spring and contact.depth <= 0.0:
                 continue
-            add_point(i, dt, mean, kind, bodies, response, total, journal.balance[0])
+            add_point(i, dt, mean, kind, bodies, response, total, balance)
             force, normal = force + contact.friction, normal + contact.normal
             if contact.normal > 0.0 or not spring:
                 surface, touching = surface + contact.surface, touching + 1
@@ -102,35 +111,35 @@ def add_sums(dt: float, kind: Kind, bodies: Bodies, response: Response | None, j
     for k in range(bodies.feet.shape[0]):
         foot = bodies.feet[k]
         load = foot.load - foot.spring_rate * foot.height
-        journal.sums[journal.slider_of_foot[k]].load_work += dt * load * (foot.velocity_z + 0.5 * foot.delta_vz)
+        sums[slider_of_foot[k]].load_work += dt * load * (foot.velocity_z + 0.5 * foot.delta_vz)
 
 
 @inline
-def add_event(time: float, kind: float, i: int, bodies: Bodies, journal: Journal) -> None:
+def add_event(time: float, kind: float, i: int, bodies: Bodies, events: Array, progress: Record) -> None:
     """Count an event of point i, and record it while there is room."""
-    row = journal.progress[0].events
-    if row < journal.events.shape[0]:
-        event = journal.events[row]
+    row = progress.events
+    if row < events.shape[0]:
+        event = events[row]
         event[0], event[1], event[2], event[3] = time, kind, i, bodies.sliders[bodies.points[i].slider].x
-    journal.progress[0].events = row + 1
+    progress.events = row + 1
 
 
 @jit(no_cpython_wrapper=True)
-def write_events(time: float, dt: float, kind: Kind, bodies: Bodies, journal: Journal) -> None:
+def write_events(time: float, dt: float, kind: Kind, bodies: Bodies, events: Array, progress: Record) -> None:
     """Events of the step that begins at `time`; of feet, landings by the line through both depths, in mid-step."""
     for i in range(bodies.points.shape[0]):
         contact = bodies.contacts[i]
         if kind.normal_law != SPRING:
             for e in range(contact.events):
                 if contact.event_kind[e] != TURNS:
-                    add_event(time + contact.event_share[e] * dt, contact.event_kind[e], i, bodies, journal)
+                    add_event(time + contact.event_share[e] * dt, contact.event_kind[e], i, bodies, events, progress)
             continue
         depth, before, sticks = contact.depth, contact.depth_before, contact.sticks > 0.0
         if (depth > 0.0) != (before > 0.0):
             share = 0.5 - depth / (depth - before)
-            add_event(time + share * dt, LANDS if depth > 0.0 else LEAVES, i, bodies, journal)
+            add_event(time + share * dt, LANDS if depth > 0.0 else LEAVES, i, bodies, events, progress)
         elif depth > 0.0 and sticks != (contact.sticks_before > 0.0):
-            add_event(time, STICKS if sticks else SLIPS, i, bodies, journal)
+            add_event(time, STICKS if sticks else SLIPS, i, bodies, events, progress)
 
 
 @inline
