@@ -181,7 +181,9 @@ def limits(slider: Record, contact: Record) -> float:
 def power(path: Path, normal: float, slider: Record, contact: Record) -> float:
     """Dissipated power of the step, W, under the kinetic limit before and after a reversal.
 
-    Up to the reversal r falls by `mobility` (kinetic + force) faster than after it, on the average by start - end.
+    With r' = mobility f - a in units of the step, start - end = a - mobility F of the mean force F. Before the reversal
+    f = -kinetic (of start > 0), so that |r| falls by mobility (kinetic + F) + start - end: the reversal is at the share
+    start over that of the step, and |r| has the means start/2 before it and |end|/2 after it.
     """
     start, end, force, kinetic = path.start, path.end, contact.friction, slider.mu * normal
     if start * end > 0.0 and contact.holds == 0.0:

@@ -32,7 +32,7 @@ all reverse their friction in the same steps."""
 FEET_MODES = 80
 """Default number of modes of the exact beam under feet."""
 COARSEST = 0.25
-"""Largest step of a slider in drive periods."""
+"""Largest step of a slider in drive periods: Simpson's rule misses (pi/4)^4/180 = 0.2 % of a surface speed there."""
 MOST_PERIODS = 1e12
 """Number of drive periods after which rounding of the phase is 1e-3 rad."""
 MOST_STEPS = 2e9

@@ -31,7 +31,9 @@ CHUNK = 20_000
 EVENTS = 20_000
 """Capacity of the event log."""
 RESOLVED = 1.5
-"""Phase or decay of a row per step, rad or neper, above which rates are means over the step."""
+"""Phase or decay of a row per step, rad or neper, above which rates are means over the step.
+
+Simpson's rule by the rates at both ends misses (1.5/2)^4/180 = 0.2 % of a mean there."""
 REACH, FARTHEST = 2, 128
 """Number of pieces of a table on each side of the points: in the first table, and at most; each doubles the last."""
 Progress = Callable[[int], None]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verify.dynamics.request import Request
 
 NEAR = 1e-3
-"""Spacing of the forces that represent a couple, over the smaller of 1/k and L/50."""
+"""Spacing of the forces that represent a couple, over the smaller of 1/k and L/50: it misses (k d)^2/24 = 4e-8."""
 Receptance = Callable[[Array], tuple[ComplexArray, ComplexArray]]
 """places (n,) -> deflections under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
 
