@@ -76,12 +76,26 @@ class PiezoMaterial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 MaterialName = Literal["pzt-4", "pzt-8"]
 PIEZO: dict[str, PiezoMaterial] = {
     "pzt-4": PiezoMaterial(
-        c11=139e9, c12=77.8e9, c13=74.3e9, c33=115e9, e31=-5.2, e33=15.1, eps33=635.0, density=7500.0,
+        c11=139e9,
+        c12=77.8e9,
+        c13=74.3e9,
+        c33=115e9,
+        e31=-5.2,
+        e33=15.1,
+        eps33=635.0,
+        density=7500.0,
         source="D. Berlincourt, D. Curran, H. Jaffe, Physical Acoustics I-A (1964), Ch. 3",
     ),
     "pzt-8": PiezoMaterial(
-        c11=146.88e9, c12=81.09e9, c13=81.05e9, c33=131.71e9, e31=-3.875, e33=13.91, eps33=561.6, density=7600.0,
+        c11=146.88e9,
+        c12=81.09e9,
+        c13=81.05e9,
+        c33=131.71e9,
+        e31=-3.875,
+        e33=13.91,
+        eps33=561.6,
+        density=7600.0,
         source="inverse of sE, d, epsT in D. Berlincourt, H. Krueger, C. Near, Morgan Electro Ceramics TP-226",
     ),
-}  # fmt: skip
+}
 """Catalogue constants without losses. Catalogues give tan delta 0.004 for both, Q 500 (PZT-4) and 1000 (PZT-8)."""

@@ -71,8 +71,11 @@ class Mounted(msgspec.Struct, frozen=True, kw_only=True):
             check_position("actuator.position, an end of the patch,", end, beam.length)
         # a moment at a clamped or guided end of the beam, which does not turn, has no effect
         still = [x for x, name in zip((0.0, beam.length), beam.supports, strict=True) if FIXED[name].rotation]
-        return tuple(PointMoment(position=end, amplitude=sign) for sign, end in ends.items()
-                     if all(abs(end - x) > 1e-9 * beam.length for x in still))  # fmt: skip
+        return tuple(
+            PointMoment(position=end, amplitude=sign)
+            for sign, end in ends.items()
+            if all(abs(end - x) > 1e-9 * beam.length for x in still)
+        )
 
     def source(self, port: Port, omega: float) -> tuple[complex, complex]:
         """(F0, Z_e) of F = F0 - Z_e v."""
@@ -245,9 +248,13 @@ class BeamInTime(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def beam_in_time(
-    beam: Beam, kind: str, forces: Sequence[PointForce], actuator: Actuator | None, frequency_hz: float,
+    beam: Beam,
+    kind: str,
+    forces: Sequence[PointForce],
+    actuator: Actuator | None,
+    frequency_hz: float,
     shunts: Sequence[tuple[float, Load]] = (),
-) -> BeamInTime:  # fmt: skip
+) -> BeamInTime:
     """The beam, loads and circuits that are equivalent to a drive of a kind in time; `forces` have its amplitudes.
 
     Far below its resonance an actuator is a spring and a mass (of a slender bar a third of its own), the coefficients
@@ -268,9 +275,11 @@ def beam_in_time(
         whole = actuator.on(beam, [*(one.position for one in driven), *(x for x, _ in shunts)])
         patch = actuator.bonded(beam)
         volts = patch.moment_per_volt
-        pairs = [replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
-                 for one in driven
-                 for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)]  # fmt: skip
+        pairs = [
+            replace(pair, amplitude=volts * one.amplitude * pair.amplitude, phase_deg=one.phase_deg)
+            for one in driven
+            for pair in Mounted(actuator=patch, position=one.position, current=0.0).loads(whole)
+        ]
         circuits = tuple(Mounted(actuator=patch, position=x, load=load) for x, load in shunts)
         return BeamInTime(beam=whole, loads=(*loads, *pairs), circuits=circuits)
     port, worst = actuator.port(omega), 0.0

@@ -73,9 +73,15 @@ def beam_margins(
             with suppress(InputError):
                 size = abs(plate_error(beam, mode))
         short = f" (half a wave, {with_unit(half)}, is shorter than the width)" if half < width else ""
-        found.append(Margin(name="bending across the width", size=size, where=where,
-                            condition=f"bending across the width may be left out{short}",
-                            remedy="no beam theory has it: use a plate, or a narrower strip"))  # fmt: skip
+        found.append(
+            Margin(
+                name="bending across the width",
+                size=size,
+                where=where,
+                condition=f"bending across the width may be left out{short}",
+                remedy="no beam theory has it: use a plate, or a narrower strip",
+            )
+        )
     return found if mode else [_against_spacing(one, 2.0 * pi / (k * beam.length)) for one in found]
 
 
@@ -120,8 +126,14 @@ def _discretisation(
         with suppress(InputError):
             enough = sufficient_count(cache, modes=mode or 0, frequency_hz=hertz, models=(model,))
             remedy = f"give more: {enough} are within {per_cent(FINE)}"
-    return Margin(name=name, size=abs(error), where=where, condition=f"{title} may lie too {side}",
-                  failure=f"{title} are {per_cent(error)} too {side} {where}", remedy=remedy)  # fmt: skip
+    return Margin(
+        name=name,
+        size=abs(error),
+        where=where,
+        condition=f"{title} may lie too {side}",
+        failure=f"{title} are {per_cent(error)} too {side} {where}",
+        remedy=remedy,
+    )
 
 
 def _mode_above(cache: SolutionCache, frequency_hz: float) -> int:
@@ -164,8 +176,14 @@ def against_exact(what: str, model: str, value: float, exact: float, rounding: f
     """
     size = 0.0 if abs(value - exact) <= rounding else abs(value / exact - 1.0) if exact else inf
     off, limit = f"{what} of {model} is off by {per_cent(size)}", inf if size <= 1.0 else 1.0
-    return Margin(name=f"{what} of {model}", size=size, limit=limit, condition=f"the exact beam answers: {off}",
-                  failure=f"{off} of the exact beam's", remedy=f"give more than {model}")  # fmt: skip
+    return Margin(
+        name=f"{what} of {model}",
+        size=size,
+        limit=limit,
+        condition=f"the exact beam answers: {off}",
+        failure=f"{off} of the exact beam's",
+        remedy=f"give more than {model}",
+    )
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
@@ -194,9 +212,19 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
     slope = float(tilt.max())
     bends = f"{what} bends the beam by {with_unit(float(w.max()))}"
     failure = f"{bends}, {per_cent(float(w.max()) / beam.length)} of its length"
-    found = [Margin(name="linear theory under " + what, size=slope**2, fine=SLOPE[0] ** 2,
-                    limit=SLOPE[1] ** 2, condition=f"a slope of {slope:.2g} is small ({failure})", failure=failure,
-                    remedy=remedy, is_error=False, leads=True)]  # fmt: skip
+    found = [
+        Margin(
+            name="linear theory under " + what,
+            size=slope**2,
+            fine=SLOPE[0] ** 2,
+            limit=SLOPE[1] ** 2,
+            condition=f"a slope of {slope:.2g} is small ({failure})",
+            failure=failure,
+            remedy=remedy,
+            is_error=False,
+            leads=True,
+        )
+    ]
     known = all(piece.youngs_modulus and piece.area for piece in beam.pieces)
     if known and slope and all(FIXED[support].deflection for support in beam.supports):
         axial = beam.length / sum(piece.length / piece.axial_stiffness for piece in beam.pieces)
@@ -206,9 +234,18 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
         c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
         size = ratio * c**2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
         effect = f"{bends}, {per_cent(size)} {'too much' if static else 'in frequency'}"
-        found.append(Margin(name="stretching under " + what, size=size, limit=1.0, is_error=False, leads=True,
-                            remedy=remedy, condition=f"an end may slide along the beam (otherwise {effect})",
-                            failure=f"{effect} unless an end slides along it"))  # fmt: skip
+        found.append(
+            Margin(
+                name="stretching under " + what,
+                size=size,
+                limit=1.0,
+                is_error=False,
+                leads=True,
+                remedy=remedy,
+                condition=f"an end may slide along the beam (otherwise {effect})",
+                failure=f"{effect} unless an end slides along it",
+            )
+        )
     return found
 
 
@@ -236,8 +273,13 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
     found = linearity_margins(what, still, LESS, static=True)
     if amplitude and slider.coupling == "one-way":
         bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
-        found.append(Margin(name="sag under a foot relative to the wave's amplitude", size=float(bent) / amplitude,
-                            remedy="use coupling = 'two-way', or shorter feet"))  # fmt: skip
+        found.append(
+            Margin(
+                name="sag under a foot relative to the wave's amplitude",
+                size=float(bent) / amplitude,
+                remedy="use coupling = 'two-way', or shorter feet",
+            )
+        )
     return found
 
 
@@ -252,22 +294,41 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
     if slider.contact is None:
         falls = f"the slider lifts off: the surface falls away with {three_digits(margins.lift_off)} times the "
         falls += "acceleration that weight and preload give it"
-        found.append(Margin(name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False,
-                            remedy=MORE))  # fmt: skip
+        found.append(
+            Margin(
+                name="lift-off", size=margins.lift_off, fine=1.0, limit=1.0, failure=falls, is_error=False, remedy=MORE
+            )
+        )
     if coupling is not None and not (coupling.two_way and slider.normal == "bilateral"):
         size = max(coupling.normal_size, 0.0 if coupling.two_way else coupling.friction_size or 0.0)
         much = f"by {per_cent(size)}" if size < inf else "where the drive does not move it"
         remedy = "use slider.normal = 'bilateral'" if coupling.two_way else "use slider.coupling = 'two-way'"
-        found.append(Margin(name="one-way coupling", size=size, condition="the contact need not act on the wave",
-                            failure=f"the contact changes the surface motion {much}", remedy=remedy))  # fmt: skip
+        found.append(
+            Margin(
+                name="one-way coupling",
+                size=size,
+                condition="the contact need not act on the wave",
+                failure=f"the contact changes the surface motion {much}",
+                remedy=remedy,
+            )
+        )
     change, missed = status.step_change or 0.0, status.unconverged / max(status.steps, 1)
     failure = f"halving the time step changes the displacement by {per_cent(change)}"
     found += [
         Margin(name="axial inertia of the links", size=margins.nonlinearity, remedy="drive it less"),
-        Margin(name="time step", size=change, fine=CONVERGED, limit=CONVERGED, failure=failure,
-               remedy="give a shorter step, or a shorter time"),
+        Margin(
+            name="time step",
+            size=change,
+            fine=CONVERGED,
+            limit=CONVERGED,
+            failure=failure,
+            remedy="give a shorter step, or a shorter time",
+        ),
         Margin(name="contact forces that did not converge", size=missed, limit=FINE, remedy="raise steps_per_period"),
-        Margin(name="time steps in a period of the contact", size=margins.contact_step**2 / 24.0,
-               remedy="raise steps_per_period"),
-    ]  # fmt: skip
+        Margin(
+            name="time steps in a period of the contact",
+            size=margins.contact_step**2 / 24.0,
+            remedy="raise steps_per_period",
+        ),
+    ]
     return [one for one in found if not one.size <= 0.0]

@@ -124,8 +124,9 @@ def rows(nodes: Array, x: Array, unknowns: Indices, derivative: int = 0, *, rota
     columns = [*(2 * cell + i for i in range(4)), *(2 * n + 2 + 2 * cell + i for i in range(2))]
     columns = columns[: 6 if len(unknowns) > 2 * n + 2 else 4]
     sizes = length ** -(derivative + rotation)
-    values = [polynomial(table, i, xi, derivative) * (sizes if i in (0, 2) else sizes * length)
-              for i in range(len(columns))]  # fmt: skip
+    values = [
+        polynomial(table, i, xi, derivative) * (sizes if i in (0, 2) else sizes * length) for i in range(len(columns))
+    ]
     return sparse_rows(unknowns[np.stack(columns, axis=1)], np.stack(values, axis=1), int(unknowns.max()) + 1)
 
 

@@ -150,10 +150,13 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
     spots = np.stack([np.minimum(ends - lengths + x, ends[-1]), more, np.maximum(own, 0.0)], axis=1)[heavy].tolist()
     spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
     return Beam(
-        length=float(ends[-1]), supports=(support, "free"), bending_stiffness=stiffness,
-        mass_per_length=float(expected[0] / lengths[0]), rotary_inertia=spin if spin > 0.0 else None,
+        length=float(ends[-1]),
+        supports=(support, "free"),
+        bending_stiffness=stiffness,
+        mass_per_length=float(expected[0] / lengths[0]),
+        rotary_inertia=spin if spin > 0.0 else None,
         mass=tuple(PointMass(position=x, mass=m, rotary_inertia=own) for x, m, own in spots if x > SAME),
-    )  # fmt: skip
+    )
 
 
 def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str, int, float]:
@@ -188,9 +191,13 @@ def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
 
 
 def judge_file(
-    path: Path, beam: Beam | None, modes: int = 5, within: float = FINE, theory: str | None = None,
+    path: Path,
+    beam: Beam | None,
+    modes: int = 5,
+    within: float = FINE,
+    theory: str | None = None,
     corrected: Path | None = None,
-) -> "Result":  # fmt: skip
+) -> "Result":
     """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`.
 
     `theory`: by default "euler-bernoulli" in a plane, "rayleigh" in space where links have the rotary inertia of their
@@ -287,8 +294,11 @@ def _write(path: Path, kind: str, solids: list[Solid], judged: list[Judged], out
             if spot := re.search((ahead + re.escape(name) + after).encode(), text):
                 edits.append((*spot.span(1), repr(k)))
     else:
-        tags = [tag for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
-                if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())]  # fmt: skip
+        tags = [
+            tag
+            for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
+            if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())
+        ]
         compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
         bodies = [[one.tag for one in body] for body in ElementTree.fromstring(data).iter("body")]
         behind = any("joint" in names[names.index("body") :] for names in bodies if "body" in names)

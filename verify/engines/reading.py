@@ -157,8 +157,10 @@ def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] |
     links = {one.get("name", ""): one for one in model.findall("link")}
     joints = {mark + one.get("name", ""): one for one in model.findall("joint")}
     frames = {one.get("name", ""): one for one in model.findall("frame")} | joints | links
-    ends = {key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
-            for key, one in joints.items()}  # fmt: skip
+    ends = {
+        key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
+        for key, one in joints.items()
+    }
     above = {child: (key, parent) for key, (parent, child) in ends.items()}
     if len(above) < len(ends):
         raise InputError(f"{name}: a link is the child of two joints: closed loops are not read, open them")

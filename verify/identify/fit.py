@@ -145,10 +145,17 @@ class Problem:
 
         exact: Any = "3-point" if at(theta[free])[1] is None else lambda part: at(part)[1][:, free]
         return least_squares(
-            lambda part: at(part)[0], theta[free], exact, (self.lower[free], self.upper[free]), x_scale="jac",
-            xtol=1e-9, ftol=1e-11, gtol=1e-14, max_nfev=200,
+            lambda part: at(part)[0],
+            theta[free],
+            exact,
+            (self.lower[free], self.upper[free]),
+            x_scale="jac",
+            xtol=1e-9,
+            ftol=1e-11,
+            gtol=1e-14,
+            max_nfev=200,
             diff_step=1e-3,  # of a simulation, far above the tolerance of its time steps
-        )  # fmt: skip
+        )
 
     def profile_end(self, theta: Array, i: int, step: float, rise: float) -> float | None:
         """The value of parameter i at which its profile is rise^2 above the best fit theta; None without that rise.

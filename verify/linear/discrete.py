@@ -366,8 +366,9 @@ class DiscreteModel(BeamModel):
     def _reactions(self, impedances: Sequence[Any], unknowns: ComplexArray) -> list[PointForce]:
         """Forces that devices exert on the beam, N."""
         scale = self.beam.bending_stiffness / self.unit**3
-        return [point_force(at, complex(-scale * z * (row @ unknowns)[0])) for at, row, z in impedances
-                if at is not None]  # fmt: skip
+        return [
+            point_force(at, complex(-scale * z * (row @ unknowns)[0])) for at, row, z in impedances if at is not None
+        ]
 
     def _field(
         self, parts: ComplexArray, frequency_hz: Any, loads: tuple[PointLoad, ...], devices: Sequence[Device]

@@ -284,8 +284,10 @@ class StructuralSystem(FactoredSystem):
                 more = step(rest, self.transposed @ (d[:, None] * self.strain(bent)), still)
                 bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
                 # a correction is what the factors lose; the next is as much smaller
-                sizes = [(abs(c).max(axis=0), abs(v).max(axis=0))
-                         for c, v in ((more[0], bent), (more[0] + more[1], bent + moved))]  # fmt: skip
+                sizes = [
+                    (abs(c).max(axis=0), abs(v).max(axis=0))
+                    for c, v in ((more[0], bent), (more[0] + more[1], bent + moved))
+                ]
                 lost = max(float((c / np.where(v == 0.0, 1.0, v)).max(initial=0.0)) for c, v in sizes)
                 if lost <= 1e-8:
                     break
