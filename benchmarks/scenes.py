@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from verify.report.summary import environment
-from verify.scene.load import packaged_scenes
+from verify.scene.file import packaged_scenes
 
 
 def seconds(scene: str, kernels: str) -> tuple[float, float]:

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from verify import InputError
-from verify.scene.load import packaged_scenes, scene_from, tables_of
+from verify.scene.file import packaged_scenes
+from verify.scene.load import scene_from, tables_of
 from verify.scene.model import Scene
 from verify.scene.schema import sections
 

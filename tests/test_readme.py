@@ -9,7 +9,7 @@ import pytest
 from verify import load_scene
 from verify.analysis.solution_cache import SolutionCache
 from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
-from verify.scene.load import packaged_scenes
+from verify.scene.file import packaged_scenes
 
 ROOT = Path(__file__).parents[1]
 PAGES = [

@@ -13,10 +13,24 @@ from verify import __version__
 from verify.errors import InputError, printable
 
 BAD_INPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
-COMMANDS = (
-    *("run", "plan", "scenes", "quantities", "measure", "table", "choose", "chain", "sweep"),
-    *("compare", "bench", "stress", "export", "diff", "schema"),
-)  # names of the commands and of their modules in `verify.commands`
+COMMANDS = {
+    "run": "Run gates and studies of scenes and write reports.",
+    "plan": "Show which gates and studies of a scene run, and why not.",
+    "scenes": "List the packaged scenes; show one, or write a new one.",
+    "quantities": "List the quantities and their arguments.",
+    "measure": "Evaluate a quantity of a scene.",
+    "table": "Run one study of a scene and print its tables.",
+    "choose": "Smallest number of segments and elements for an accuracy.",
+    "chain": "Joints and links as rigid bodies for MuJoCo, Gazebo, Drake.",
+    "sweep": "Evaluate quantities over lists of values.",
+    "compare": "Identify the discretisation behind natural frequencies.",
+    "bench": "Measure run time over error of all methods.",
+    "stress": "Run the numerical stress checks.",
+    "export": "Write modes, the driven wave or the motion to a file.",
+    "diff": "Show what differs between saved runs.",
+    "schema": "List the keys of a scene file.",
+}
+"""The commands, which are the modules of `verify.commands`, with their line in `verify --help`, which imports none."""
 
 
 class BrokenPipe(Exception):  # noqa: N818
@@ -36,6 +50,11 @@ class Commands(click.Group):
             return None
         command: click.Command = getattr(import_module(f"verify.commands.{cmd_name}"), cmd_name)
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of the commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""

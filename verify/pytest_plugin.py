@@ -29,7 +29,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
         return None
     if not parent.session.isinitpath(file_path):
         from verify.errors import InputError
-        from verify.scene.load import read_toml
+        from verify.scene.file import read_toml
 
         try:
             tables = read_toml(file_path)

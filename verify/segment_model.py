@@ -18,7 +18,7 @@ Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses i
 """
 
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -84,8 +84,8 @@ class SegmentModel(ChainStructure):
     """c of a dashpot at every joint, N m s, in harmonic motion."""
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            object.__setattr__(self, one.name, python_scalar(getattr(self, one.name)))
+        for name in ("n_segments", "grading", "joint_dashpot"):
+            object.__setattr__(self, name, python_scalar(getattr(self, name)))
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         for name, words in _WORDS.items():
             check_choice(name, getattr(self, name), words)

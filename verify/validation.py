@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cache
-from math import isfinite
+from math import inf, isfinite
 from types import MemberDescriptorType
 from typing import Annotated, Any, TypeAlias, TypeVar, cast
 
@@ -83,14 +83,22 @@ def check_number(
     at_most: float | None = None,
 ) -> None:
     """Raise InputError unless `value` is finite and within the limits, of which `above` and `below` are open."""
+    number = python_scalar(value)
+    if type(number) in (float, int) and -inf < number < inf:
+        inside = (above is None or above < number) and (below is None or number < below)
+        if inside and (at_least is None or at_least <= number) and (at_most is None or number <= at_most):
+            return
     annotation: Any = Annotated[float, unit(unit_name, gt=above, ge=at_least, lt=below, le=at_most)]
-    convert(python_scalar(value), annotation, field)
+    convert(number, annotation, field)
 
 
 def check_integer(field: str, value: object, least: int, most: int | None = None) -> None:
     """Raise InputError unless `value` is a whole number from `least` to `most`."""
+    number = python_scalar(value)
+    if type(number) is int and least <= number <= (inf if most is None else most):
+        return
     annotation: Any = Annotated[int, Meta(ge=least, le=most)]
-    convert(python_scalar(value), annotation, field)
+    convert(number, annotation, field)
 
 
 def check_position(field: str, x: float, length: float) -> None:

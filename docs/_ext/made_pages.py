@@ -66,7 +66,8 @@ def gates():
     from verify.report.beam_drawing import beam_figure
     from verify.report.plotting import figure_files
     from verify.report.summary import expected
-    from verify.scene.load import load_scene, packaged_scenes
+    from verify.scene.file import packaged_scenes
+    from verify.scene.load import load_scene
 
     yield GATES
     for scene in map(load_scene, packaged_scenes()):

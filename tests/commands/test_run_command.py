@@ -90,7 +90,7 @@ def test_interrupt_is_status_130(capsys, monkeypatch):
     def interrupted(*arguments, **more):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("verify.scene.run.run_scene", interrupted)
+    monkeypatch.setattr("verify.commands.run.run_scene", interrupted)
     assert status_of(["run", "bare.toml"]) == 130
     assert capsys.readouterr().err.strip() == "verify: interrupted"
     assert not list(Path("reports").iterdir())

@@ -52,7 +52,8 @@ def test_links_are_inside_and_lead_somewhere(built):
 
 def test_reference_pages_list_what_the_package_has(built):
     from verify.quantities.base import QUANTITIES
-    from verify.scene.load import load_scene, packaged_scenes
+    from verify.scene.file import packaged_scenes
+    from verify.scene.load import load_scene
 
     made = {name: (built[0] / "made" / f"{name}.html").read_text("utf-8") for name in ("quantities", "gates")}
     assert [name for name in QUANTITIES if f">{name}<" not in made["quantities"]] == []

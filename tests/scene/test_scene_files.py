@@ -7,7 +7,8 @@ import pytest
 from tests.beams import STRIP_TOML
 from verify import Beam, load_scene
 from verify.errors import InputError
-from verify.scene.load import STARTER, packaged_scenes, scene_from, tables_of, toml_text
+from verify.scene.file import STARTER, packaged_scenes, toml_text
+from verify.scene.load import scene_from, tables_of
 from verify.scene.model import Claim, Scene
 from verify.scene.run import skipped_gates
 from verify.scene.schema import scene_schema, sections

@@ -1,8 +1,14 @@
 """The work-precision benchmarks."""
 
+from dataclasses import replace
+
 import click
 
 from verify.commands.shared import BeamCommand, charts_option, format_options, progress, save_charts, show
+from verify.convert import convert, typed
+from verify.errors import InputError
+from verify.quantities.base import TABLES
+from verify.scene.load import load_scene
 
 
 @click.command(cls=BeamCommand)
@@ -14,25 +20,22 @@ from verify.commands.shared import BeamCommand, charts_option, format_options, p
 @charts_option
 @format_options
 def bench(
-    sets: tuple[str, ...], scene: str | None, mode: int | None, sizes: str | None, seconds: float, charts: str | None,
+    sets: tuple[str, ...],
+    scene: str | None,
+    mode: int | None,
+    sizes: str | None,
+    seconds: float,
+    charts: str | None,
     **formats: bool,
-) -> None:  # fmt: skip
+) -> None:
     """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
     Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --sizes 49,98`
     """
-    from dataclasses import replace
-
-    from verify.bench import measure, result
+    from verify.bench import measure, result  # which load scipy
     from verify.bench.methods import SETS, Problem, problem_of, questions
-    from verify.convert import convert, typed
-    from verify.errors import InputError
 
-    problem = Problem()
-    if scene:
-        from verify.scene.load import load_scene
-
-        problem = problem_of(load_scene(scene))
+    problem = problem_of(load_scene(scene, (), TABLES)) if scene else Problem()
     counts = convert(typed(sizes, tuple[int, ...], "--sizes"), tuple[int, ...], "--sizes") if sizes else problem.sizes
     problem = replace(problem, sizes=sorted(set(counts)), mode=mode or problem.mode)
     measured = []
@@ -40,11 +43,11 @@ def bench(
         for name in sets or SETS:
             step(name)
             try:
-                measured += [(one, measure(one, seconds)) for one in questions([name], problem)]
+                measured += [(question, measure(question, seconds)) for question in questions([name], problem)]
             except InputError as error:
                 if sets:
                     raise
                 click.echo(f"verify: {error}", err=True)  # one of all sets, which this beam or machine does not have
-    found = result(measured)
-    show(found, **formats)
-    save_charts(found, charts)
+    table = result(measured)
+    show(table, **formats)
+    save_charts(table, charts)

@@ -1,17 +1,24 @@
 """`verify chain`: the joints of a chain of rigid bodies in plain units, and its file for another engine."""
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from verify.analysis.margins import beam_margins
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin
+from verify.commands.choose import relative_error
 from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.convert import typed
+from verify.engines.description import MOST_LINKS, RULES, RigidChain, describe
+from verify.engines.judgement import judge_file
+from verify.engines.writers import data, table, write
 from verify.errors import InputError, printable
-
-if TYPE_CHECKING:
-    from verify.engines.description import RigidChain
-    from verify.problem.beam import Beam
-    from verify.report.result import Result, Table
+from verify.problem.beam import Beam
+from verify.report.result import Column, Result, Table
+from verify.scene.file import load_beam
+from verify.validation import Relative
 
 CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
 """Suffixes of chains of rigid bodies that `verify compare` judges."""
@@ -33,22 +40,23 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
-    scene: str, overrides: tuple[str, ...], count: int | None, mode: int, error: str, wall: str, in_space: bool,
-    damping: str, path: str | None, **formats: bool,
-) -> None:  # fmt: skip
+    scene: str,
+    overrides: tuple[str, ...],
+    count: int | None,
+    mode: int,
+    error: str,
+    wall: str,
+    in_space: bool,
+    damping: str,
+    path: str | None,
+    **formats: bool,
+) -> None:
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
 
     Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
     Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`
     """
-    from verify.commands.choose import relative_error
-    from verify.convert import typed
-    from verify.engines.description import describe
-    from verify.engines.writers import write
-    from verify.scene.load import load_scene
-    from verify.validation import Relative
-
-    ratio, beam = typed(damping, Relative, "damping"), load_scene(scene, overrides).beam
+    ratio, beam = typed(damping, Relative, "damping"), load_beam(scene, overrides).beam
     if count is None:
         count = fewest(beam, mode, relative_error(error), wall, in_space)
     described, brief = describe(beam, count, wall=wall, in_space=in_space, damping=ratio), not any(formats.values())
@@ -60,21 +68,20 @@ def chain(
 
 
 def judge_chain(
-    words: list[str], overrides: tuple[str, ...], modes: int, within: str, theory: str | None, corrected: str | None,
+    words: list[str],
+    overrides: tuple[str, ...],
+    modes: int,
+    within: str,
+    theory: str | None,
+    corrected: str | None,
     formats: dict[str, bool],
-) -> None:  # fmt: skip
+) -> None:
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
-    from dataclasses import replace
-
-    from verify.commands.choose import relative_error
-    from verify.engines.judgement import judge_file
-    from verify.scene.load import load_scene
-
     files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]
     others = [word for word in words if Path(word) not in files]
     if len(files) > 1 or len(others) > 1:
         raise InputError(f"{' '.join(words)}: give one file, with one scene or none")
-    beam = load_scene(others[0], overrides).beam if others else None
+    beam = load_beam(others[0], overrides).beam if others else None
     out = Path(corrected) if corrected else None
     result = judge_file(files[0], beam, modes, relative_error(within), theory, out)
     if not any(formats.values()):
@@ -84,15 +91,13 @@ def judge_chain(
         raise SystemExit(GATE_FAILED)
 
 
-def fewest(beam: "Beam", mode: int, error: float, wall: str = "gregory", in_space: bool = False) -> int:
+def fewest(beam: Beam, mode: int, error: float, wall: str = "gregory", in_space: bool = False) -> int:
     """The smallest number of links that is within the error at a mode, and so is the next one tried."""
-    from verify.engines.description import MOST_LINKS, describe
-
     count, first = max(len(beam.pieces), mode + 1, 2), 0
     while count <= MOST_LINKS:
         tried = describe(beam, count, wall=wall, in_space=in_space)
         errors = [tried.errors(axis, mode) for axis in tried.axes]
-        worst = max(abs(one[-1]) if len(one) >= mode else 1.0 for one in errors)
+        worst = max(abs(error_by_mode[-1]) if len(error_by_mode) >= mode else 1.0 for error_by_mode in errors)
         if worst <= error and first:
             return first
         first = count if worst <= error else 0
@@ -101,15 +106,8 @@ def fewest(beam: "Beam", mode: int, error: float, wall: str = "gregory", in_spac
     raise InputError(f"error = {error!r}: {text}")
 
 
-def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
+def _result(chain: RigidChain, mode: int, *, brief: bool) -> Result:
     """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
-    from verify.analysis.margins import beam_margins
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.verdict import Margin
-    from verify.engines.description import RULES, describe
-    from verify.engines.writers import data, table
-    from verify.report.result import Column, Result, Table
-
     walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
     others = {
         RULES[wall]: describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls if wall != chain.wall
@@ -121,12 +119,19 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         hertz, errors = chain.frequencies_hz(axis, mode).tolist(), chain.errors(axis, mode).tolist()
         if len(hertz) < mode:
             raise InputError(f"count = {n}: the chain has {len(hertz)} modes in {axis}, raise it or lower --mode")
-        every = [[*one.errors(axis, mode).tolist(), *[None] * mode][:mode] for one in others.values()]
+        every = [[*other.errors(axis, mode).tolist(), *[None] * mode][:mode] for other in others.values()]
         exact = chain.exact_hz(axis, mode).tolist()
         rows += zip([axis] * mode, range(1, mode + 1), exact, hertz, errors, *every, strict=True)
         name = f"discretisation of {n} links in {axis}"
-        margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
-                           condition=f"{n} links are enough in {axis}")]  # fmt: skip
+        margins += [
+            Margin(
+                name=name,
+                size=abs(errors[-1]),
+                where=f"at mode {mode}",
+                remedy="give more links",
+                condition=f"{n} links are enough in {axis}",
+            )
+        ]
     rule = f", {RULES[chain.wall]} at the wall" if walls else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.beam.mass or chain.springs):
@@ -135,13 +140,12 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
 
 
-def _shortened(table: "Table") -> "Table":
+def _shortened(table: Table) -> Table:
     """The first rows and the last, and a row with what those in between have in common."""
-    from dataclasses import replace
-
     rows = [(str(row[0]), *row[1:]) for row in table.rows]
     inner = list(zip(*rows[FIRST:-1], strict=True))[1:]
-    alike = [values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None
-             for values in inner]  # fmt: skip
+    alike = [
+        values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None for values in inner
+    ]
     between = [(f"{FIRST} to {len(rows) - 2}", *alike)] if len(rows) > FIRST + 2 else rows[FIRST:-1]
     return replace(table, rows=[*rows[:FIRST], *between, *rows[-1:]] if len(rows) > FIRST else rows)

@@ -2,8 +2,16 @@
 
 import click
 
+from verify.analysis.margins import beam_margins
+from verify.analysis.sizing import choose as choose_sizes
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.variants import Rules
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.convert import convert, literal, typed
 from verify.errors import InputError
+from verify.report.result import Column, Result, Table
+from verify.scene.file import load_beam
+from verify.validation import Relative
 
 
 @click.command(cls=BeamCommand)
@@ -21,34 +29,26 @@ def choose(
     RULE=VALUE sets up the models: wall=half,gregory joints=printed theory=timoshenko grading=2 attachment=lever.
     Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
-    from verify.analysis.margins import beam_margins
-    from verify.analysis.sizing import choose as choose_sizes
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.variants import Rules
-    from verify.convert import convert, literal
-    from verify.report.result import Column, Result, Table
-    from verify.scene.load import load_scene
-
     pairs = [rule.partition("=") for rule in rules]
     for key, equals, _ in pairs:
         if not equals:
             raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
     chosen = convert({key: literal(text, key) for key, _, text in pairs}, Rules)
     modes, largest = _modes(mode), relative_error(error)
-    cache = SolutionCache(load_scene(scene, overrides).beam)
+    cache = SolutionCache(load_beam(scene, overrides).beam)
     choices, skipped = choose_sizes(cache, modes, largest, chosen)
     first = choices[0].variant.settings
-    sizes = [(one.variant.model, one.size.count) for one in choices if one.variant.settings == first]
+    sizes = [(choice.variant.model, choice.size.count) for choice in choices if choice.variant.settings == first]
     margins = beam_margins(cache, sizes, mode=modes if isinstance(modes, int) else modes[-1], settings=first)
     rows: list[tuple[object, ...]] = []
-    for one in choices:
-        size, cost = one.size, (one.unknowns, one.error, one.expected_error, one.run_time_s)
-        lower = ", ".join(map(str, one.lower))
-        rows.append((one.variant.title, size.count, size.mode, *cost, size.smaller, lower))
+    for choice in choices:
+        size, cost = choice.size, (choice.unknowns, choice.error, choice.expected_error, choice.run_time_s)
+        lower = ", ".join(map(str, choice.lower))
+        rows.append((choice.variant.title, size.count, size.mode, *cost, size.smaller, lower))
     columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
-    notes = [f"{one.variant.title}: {one.size.known_by}" for one in choices]
+    notes = [f"{choice.variant.title}: {choice.size.known_by}" for choice in choices]
     notes += ["error law: expected error, see docs/theory.md", "lower modes beyond it: errors above the limit at N"]
     result = Result(
         f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
@@ -60,8 +60,6 @@ def choose(
 
 
 def _modes(text: str) -> int | range:
-    from verify.convert import typed
-
     modes = typed(text, tuple[int, ...], "mode")
     if not all(isinstance(mode, int) and mode > 0 for mode in modes) or modes != [*range(modes[0], modes[-1] + 1)]:
         raise InputError(f"mode = {text!r}: give one mode, or all of a range as 1-12, numbered from 1")
@@ -70,9 +68,6 @@ def _modes(text: str) -> int | range:
 
 def relative_error(text: str) -> float:
     """A relative error. A plain number of 0.1 or more is refused: most who write it mean per cent."""
-    from verify.convert import typed
-    from verify.validation import Relative
-
     value = typed(text, Relative, "error")
     if not isinstance(value, float | int) or not 1e-12 <= value < (1.0 if text.endswith("%") else 0.1):
         raise InputError(f"error = {text!r}: give a relative error from 1e-12, below 0.1 or with a per cent sign: 1%")

@@ -6,17 +6,24 @@ import click
 
 from verify.commands import shared
 from verify.commands.chain import CHAINS, judge_chain
+from verify.compare.compare import Options
+from verify.compare.compare import compare as compare_list
+from verify.compare.reading import UNITS, read_frequencies, read_shapes, read_words, solve_model
+from verify.compare.shapes import compare_shapes, read_mesh
+from verify.convert import typed
+from verify.errors import InputError
+from verify.io.mode_files import is_mesh
 from verify.options import THEORIES
+from verify.scene.file import load_beam
+from verify.validation import Relative
 
-UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
-"""As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 """Suffixes of lists of frequencies, in addition to those that are of no mesh."""
 
 
 @click.command(cls=shared.BeamCommand)
 @shared.scene_argument
-@click.argument("given", nargs=-1, metavar="FILE | FREQUENCIES...")
+@click.argument("words", nargs=-1, metavar="FILE | FREQUENCIES...")
 @shared.overrides_option
 @click.option(
     "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
@@ -24,7 +31,9 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
 @click.option(
-    "--unit", type=click.Choice(UNITS), help="Of the list. Default: its header's, else the one that fits the beam."
+    "--unit",
+    type=click.Choice(list(UNITS)),
+    help="Of the list. Default: its header's, else the one that fits the beam.",
 )
 @click.option("--kind", type=click.Choice(["segments", "elements"]), help="Candidates of one kind only.")
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
@@ -37,7 +46,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 @shared.format_options
 def compare(
     scene: str,
-    given: tuple[str, ...],
+    words: tuple[str, ...],
     overrides: tuple[str, ...],
     count: int | None,
     shapes: str | None,
@@ -60,43 +69,32 @@ def compare(
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
-    from verify.compare.compare import Options
-    from verify.compare.compare import compare as compare_list
-    from verify.compare.reading import read_frequencies, read_shapes, read_words, solve_model
-    from verify.convert import typed
-    from verify.errors import InputError
-    from verify.io.mode_files import is_mesh
-    from verify.scene.load import load_scene
-    from verify.validation import Relative
-
-    if any(Path(word).suffix.lower() in CHAINS for word in (scene, *given)):
-        return judge_chain([scene, *given], overrides, mode or 3, within, theory, corrected, formats)
-    if bool(given) == bool(model):
+    if any(Path(word).suffix.lower() in CHAINS for word in (scene, *words)):
+        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats)
+    if bool(words) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = typed(within, Relative, "within")
     if not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
-    loaded = load_scene(scene, overrides)
+    loaded = load_beam(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory or THEORIES[0])
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
-    typed_list = None if Path(given[0] if given else "").exists() else read_words(given, unit)
+    typed_list = None if Path(words[0] if words else "").exists() else read_words(words, unit)
     if model is not None:
         frequencies = solve_model(model, loaded.beam, count, mode)
     elif typed_list is not None:
         frequencies = typed_list
-    elif len(given) > 1:
-        raise InputError(f"frequencies = {' '.join(given)}: give one file, or numbers alone")
-    elif (suffix := Path(given[0]).suffix.lower()) in TEXT or not is_mesh(suffix):
-        frequencies = read_frequencies(Path(given[0]), unit)
+    elif len(words) > 1:
+        raise InputError(f"frequencies = {' '.join(words)}: give one file, or numbers alone")
+    elif (suffix := Path(words[0]).suffix.lower()) in TEXT or not is_mesh(suffix):
+        frequencies = read_frequencies(Path(words[0]), unit)
     else:
         frequencies = None
     if frequencies is not None:
         with shared.progress(quiet=any(formats.values()), lines=count is None) as step:
             result = compare_list(loaded, frequencies, forms, options, step)
     else:
-        from verify.compare.shapes import compare_shapes, read_mesh
-
-        result = compare_shapes(loaded, read_mesh(Path(given[0]), loaded.beam.length), options)
+        result = compare_shapes(loaded, read_mesh(Path(words[0]), loaded.beam.length), options)
     shared.show(result, **formats)
     shared.save_charts(result, charts)
     if not result.data["passed"]:

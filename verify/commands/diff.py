@@ -5,6 +5,8 @@ from pathlib import Path
 import click
 
 from verify.commands.shared import GATE_FAILED, format_options, show
+from verify.report.archive import read_runs
+from verify.report.diff import compare_runs
 
 
 @click.command()
@@ -17,9 +19,6 @@ def diff(before: str, after: str, **formats: bool) -> None:
     Each is a run.json, the folder of a run, of a scene's runs (the newest) or of all reports (the newest of each).
     Example: `verify diff reports/paper/2026-03-01_14-05-09-271828 reports/paper`
     """
-    from verify.report.archive import read_runs
-    from verify.report.diff import compare_runs
-
     result = compare_runs(read_runs(Path(before), "A"), read_runs(Path(after), "B"))
     show(result, **formats)
     if result.data["broken"]:

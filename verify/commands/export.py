@@ -6,7 +6,21 @@ import click
 
 from verify.commands.chain import CHAINS, fewest
 from verify.commands.shared import BeamCommand, overrides_option, progress, scene_argument
+from verify.engines.description import describe
+from verify.engines.writers import write as write_chain
 from verify.errors import printable
+from verify.io.data import Request
+from verify.io.export import write
+from verify.scene.file import load_beam
+from verify.scene.load import load_scene
+
+PARTS: dict[str | None, set[str]] = {
+    "modes": {"spectrum"},
+    "wave": {"drive", "wave"},
+    "motion": {"drive", "slider", "motion"},
+    "convergence": {"convergence"},
+}
+"""Tables of a scene that a file reads besides the beam, by its contents; all where the file type decides."""
 
 
 @click.command(cls=BeamCommand)
@@ -21,9 +35,15 @@ from verify.errors import printable
 @click.option("--mode", type=click.IntRange(1), metavar="N", help="The mode of a picture, the number of modes of data.")
 @click.option("--samples", type=click.IntRange(2), metavar="N", help="Instants of a period or of a motion.")
 def export(
-    scene: str, overrides: tuple[str, ...], what: str | None, path: str, model: str, count: int | None,
-    mode: int | None, samples: int | None,
-) -> None:  # fmt: skip
+    scene: str,
+    overrides: tuple[str, ...],
+    what: str | None,
+    path: str,
+    model: str,
+    count: int | None,
+    mode: int | None,
+    samples: int | None,
+) -> None:
     """Write modes, the driven wave or the motion of SCENE to FILE.
 
     vtu and xdmf (a series) for ParaView; csv, json and npz for data; png, gif and webp for pictures. The chart of
@@ -31,18 +51,11 @@ def export(
     a plane; `verify chain` has its options.
     Example: `verify export paper --what modes --to modes.vtu`
     """
-    from verify.io.data import Request
-    from verify.io.export import write
-    from verify.scene.load import load_scene
-
-    loaded = load_scene(scene, overrides)
     if path.lower().endswith((*CHAINS, ".py")):
-        from verify.engines.description import describe
-        from verify.engines.writers import write as write_chain
-
-        described = describe(loaded.beam, count or fewest(loaded.beam, mode or 3, 0.01))
+        beam = load_beam(scene, overrides).beam
+        described = describe(beam, count or fewest(beam, mode or 3, 0.01))
         return click.echo(printable(write_chain(described, Path(path))))
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
-        summary = write(loaded, Path(path), request, step)
+        summary = write(load_scene(scene, overrides, PARTS.get(what)), Path(path), request, step)
     click.echo(printable(f"wrote {path}: {summary}"))

@@ -2,7 +2,12 @@
 
 import click
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
+from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
+from verify.report.result import Result
+from verify.scene.load import load_scene, tables_read
+from verify.studies.sweep import quantity_margins
 
 
 @click.command(cls=shared.BeamCommand)
@@ -18,23 +23,17 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
 
     Example: `verify measure paper mode.frequency_error model=segment mode=22 count=49`
     """
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
-    from verify.report.result import Result
-    from verify.scene.load import load_scene
-    from verify.studies.sweep import quantity_margins
-
-    given = parse_arguments(quantity, arguments)
-    loaded = load_scene(scene, overrides)
+    values = parse_arguments(quantity, arguments)
+    loaded = load_scene(scene, overrides, tables_read([quantity]))
     with shared.progress(quiet=as_json) as step:
         step(quantity)
-        value = evaluate(quantity, given, loaded, cache := SolutionCache(loaded.beam))
-        margins = quantity_margins(quantity, given, loaded, cache)
-    unit = QUANTITIES.named(quantity).unit_of(given)
+        value = evaluate(quantity, values, loaded, cache := SolutionCache(loaded.beam))
+        margins = quantity_margins(quantity, values, loaded, cache)
+    unit = QUANTITIES.named(quantity).unit_of(values)
     result = Result(f"{quantity} = {as_text(value)} {unit}".removesuffix(" 1"), margins=margins)
     if as_json:
-        own = {"quantity": quantity, "arguments": given, "value": as_plain(value), "unit": unit}
-        own |= {"error": value.error} if isinstance(value, Estimate) else {}
-        shared.print_json(own | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
+        data = {"quantity": quantity, "arguments": values, "value": as_plain(value), "unit": unit}
+        data |= {"error": value.error} if isinstance(value, Estimate) else {}
+        shared.print_json(data | ({"verdict": result.verdict.to_dict()} if result.verdict else {}))
     else:
         result.print(shared.console())

@@ -3,6 +3,10 @@
 import click
 
 from verify.commands.shared import format_options, overrides_option, scene_argument, show
+from verify.report.result import Column, Result, Table
+from verify.scene.load import load_scene
+from verify.scene.run import plan as plan_scene
+from verify.scene.warnings import scene_warnings
 
 
 @click.command()
@@ -14,13 +18,9 @@ def plan(scene: str, overrides: tuple[str, ...], **formats: bool) -> None:
 
     Example: `verify plan paper --set beam.length=0.4`
     """
-    from verify.report.result import Column, Result, Table
-    from verify.scene.load import load_scene
-    from verify.scene.run import plan as plan_scene
-    from verify.scene.warnings import scene_warnings
-
-    rows = [(row.what, row.kind, row.runs, row.why) for row in plan_scene(scene, overrides)]
+    loaded = load_scene(scene, overrides)
+    rows = [(row.what, row.kind, row.runs, row.why) for row in plan_scene(loaded, overrides)]
     table = Table("", [Column("what"), Column("kind"), Column("runs"), Column("quantity, or why skipped")], rows)
     skipped = sum(not row[2] for row in rows)
     summary = f"{len(rows) - skipped} parts run, {skipped} are skipped."
-    show(Result(summary, [table], warnings=scene_warnings(load_scene(scene, overrides))), **formats)
+    show(Result(summary, [table], warnings=scene_warnings(loaded)), **formats)

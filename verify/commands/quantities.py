@@ -3,6 +3,11 @@
 import click
 
 from verify.commands.shared import console, json_option, print_json
+from verify.quantities.base import describe
+from verify.report.result import Column, Table
+
+DETAILED = 4
+"""Quantities up to which the arguments are listed."""
 
 
 @click.command()
@@ -13,26 +18,19 @@ def quantities(words: tuple[str, ...], as_json: bool) -> None:
 
     Example: `verify quantities mode order`
     """
-    from verify.quantities.base import describe
-    from verify.report.result import Column, Table
-
-    found = describe(*words)
+    listed = describe(*words)
     if as_json:
-        print_json(found)
+        print_json(listed)
         return
-    rows = [(one["name"], one["unit"], one["summary"]) for one in found]
+    rows = [(entry["name"], entry["unit"], entry["summary"]) for entry in listed]
     Table("", [Column("quantity"), Column("unit"), Column("summary")], rows).print(console())
-    if len(found) > DETAILED:
+    if len(listed) > DETAILED:
         return
-    for one in found:
+    for entry in listed:
         arguments = [
             (a["name"], a["type"], "required" if a["required"] else str(a["default"]), a["description"])
-            for a in one["arguments"]
+            for a in entry["arguments"]
         ]
         columns = [Column(name) for name in ("argument", "type", "default", "meaning")]
         click.echo()
-        Table(f"Arguments of {one['name']}", columns, arguments).print(console())
-
-
-DETAILED = 4
-"""Quantities up to which the arguments are listed."""
+        Table(f"Arguments of {entry['name']}", columns, arguments).print(console())

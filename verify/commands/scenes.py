@@ -1,11 +1,16 @@
 """`verify scenes`: list and show scenes, start a new one."""
 
 from pathlib import Path
+from shlex import quote
 
 import click
 
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
+from verify.files import exists, write_whole
+from verify.problem.phrase import PREFIX
+from verify.report.result import Column, Result, Table
+from verify.scene import file as files
 
 
 @click.group(invoke_without_command=True)
@@ -15,11 +20,8 @@ def scenes(context: click.Context, /, **formats: bool) -> None:
     """List the packaged scenes; show one, or write a new one."""
     if context.invoked_subcommand is not None:
         return
-    from verify.report.result import Column, Result, Table
-    from verify.scene.load import load_scene, packaged_scenes
-
-    found = [load_scene(name) for name in packaged_scenes()]
-    rows = [(one.name, one.title, len(one.gate)) for one in found]
+    every = map(files.read_tables, files.packaged_scenes())
+    rows = [(tables["name"], tables.get("title", ""), len(tables.get("gate", ()))) for tables in every]
     show(Result(tables=[Table("", [Column("scene"), Column("title"), Column("gates")], rows)]), **formats)
 
 
@@ -31,10 +33,11 @@ def show_scene(scene: str, overrides: tuple[str, ...]) -> None:
 
     Example: `verify scenes show paper --set beam.length=0.4`
     """
-    from verify.scene.load import load_scene, read_text, scene_path, tables_of, toml_text
+    from verify.scene.load import scene_from, tables_of  # the quantities and studies, which a list does without
 
-    load_scene(scene, overrides)
-    text = toml_text(tables_of(scene, overrides)) if overrides else read_text(scene_path(scene))
+    tables = tables_of(scene, overrides)
+    scene_from(tables)
+    text = files.toml_text(tables) if overrides else files.read_text(files.scene_path(scene))
     click.echo(text, nl=not text.endswith("\n"))
 
 
@@ -47,16 +50,13 @@ def init(path: str, scene: str | None, force: bool) -> None:
 
     Example: `verify scenes init mine.toml --from steel-cantilever`
     """
-    from shlex import quote
-
-    from verify.files import exists, write_whole
-    from verify.problem.phrase import PREFIX
-    from verify.scene.load import STARTER, copy_with_name, name_of, read_text, scene_path, starter_with, tables_of
-
-    text = read_text(STARTER)
+    text = files.read_text(files.STARTER)
     if scene is not None:
-        source = starter_with(tables_of(scene)) if scene.startswith(PREFIX) else read_text(scene_path(scene))
-        text = copy_with_name(source, name_of(Path(path)))
+        if scene.startswith(PREFIX):
+            text = files.starter_with(files.read_tables(scene))
+        else:
+            text = files.read_text(files.scene_path(scene))
+        text = files.copy_with_name(text, files.name_of(Path(path)))
     if exists(Path(path), "path") and not force:
         raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")
     write_whole(Path(path), text, "path")

@@ -3,14 +3,21 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.errors import InputError
+from verify.files import whole, writable_folder, write_whole
+from verify.parallel import cluster
+from verify.problem.materials import MATERIALS
+from verify.problem.phrase import EXAMPLE, PREFIX
+from verify.report.plotting import figure_files
+from verify.report.result import Result, to_json
+
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from verify.report.result import Result
 
 GATE_FAILED = 1
 """Exit status where a gate or check failed."""
@@ -22,9 +29,6 @@ class BeamCommand(click.Command):
     """A command that has `--beam PHRASE` in place of its argument SCENE, or of the option that names a scene."""
 
     def __init__(self, *values: Any, **options: Any) -> None:
-        from verify.problem.materials import MATERIALS
-        from verify.problem.phrase import EXAMPLE
-
         super().__init__(*values, **options)
         text = f"A beam in place of SCENE: '{EXAMPLE}'. Sections: WIDTH x THICKNESS, round DIAMETER, tube DIAMETER x "
         text += f"WALL. Materials: {', '.join(MATERIALS)}, or E=69GPa rho=2.7g/cm3."
@@ -32,12 +36,10 @@ class BeamCommand(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Insert the phrase in front, as the name of the scene or after the option."""
-        from verify.problem.phrase import PREFIX
-
         for word, following in zip(args, [*args[1:], ""], strict=True):
             name, _, phrase = word.partition("=")
             if name == "--beam":
-                option = [one.opts[0] for one in self.params if one.name == "scene" and isinstance(one, click.Option)]
+                option = [x.opts[0] for x in self.params if x.name == "scene" and isinstance(x, click.Option)]
                 return super().parse_args(ctx, [*option, PREFIX + (phrase or following), *args])
         return super().parse_args(ctx, args)
 
@@ -53,8 +55,6 @@ def cluster_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add `--scheduler` and `--local-cluster`, which run the command inside `parallel.cluster`."""
 
     def enter(ctx: click.Context, option: click.Parameter, where: str | int | None) -> None:
-        from verify.parallel import cluster
-
         if where is not None:
             ctx.with_resource(cluster(where))
 
@@ -73,13 +73,11 @@ def format_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return json_option(csv_option(markdown_option(command)))
 
 
-def show(result: "Result", *, as_json: bool = False, as_csv: bool = False, as_markdown: bool = False) -> None:
+def show(result: Result, *, as_json: bool = False, as_csv: bool = False, as_markdown: bool = False) -> None:
     """Print a result on standard output: for a person, or in one of the formats for programs.
 
     Raises click.UsageError for more than one format, InputError for CSV or Markdown of a result without a table.
     """
-    from verify.errors import InputError
-
     if as_json + as_csv + as_markdown > 1:
         raise click.UsageError("--json, --csv and --markdown exclude each other: give one of them.")
     if as_json:
@@ -93,15 +91,10 @@ def show(result: "Result", *, as_json: bool = False, as_csv: bool = False, as_ma
         result.print(console())
 
 
-def save_charts(result: "Result", charts: str | None) -> None:
+def save_charts(result: Result, charts: str | None) -> None:
     """Write every chart of a result as ID.svg and ID.png; nothing where no folder is given. Raises InputError."""
     if charts is None:
         return
-    from pathlib import Path
-
-    from verify.files import whole, writable_folder, write_whole
-    from verify.report.plotting import figure_files
-
     folder = writable_folder(Path(charts), "--charts")
     for figure in result.figures:
         svg, png = figure_files(figure)
@@ -112,8 +105,6 @@ def save_charts(result: "Result", charts: str | None) -> None:
 
 def print_json(value: Any) -> None:
     """Print plain data as JSON on standard output."""
-    from verify.report.result import to_json
-
     click.echo(to_json(value), nl=False)
 
 

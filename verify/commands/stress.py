@@ -3,6 +3,8 @@
 import click
 
 from verify.commands.shared import GATE_FAILED, format_options, progress, show
+from verify.stress.engine import run, select
+from verify.stress.report import result
 
 
 @click.command()
@@ -16,19 +18,14 @@ def stress(ids: tuple[str, ...], slow: bool, listed: bool, **formats: bool) -> N
     Each check measures an error along one parameter, up to where it exceeds its tolerance or the input is refused.
     Example: `verify stress tip-mass near-resonance`
     """
-    from verify.stress.engine import run, select
-
     checks = select(ids, slow=slow or listed)
     if listed:
-        for one in checks:
-            click.echo(f"{one.id:28} {one.title}")
+        for check in checks:
+            click.echo(f"{check.id:28} {check.title}")
         return
-    from verify.stress.report import result
-
     with progress(len(checks), quiet=any(formats.values())) as step:
         step(checks[0].id)
         outcomes = run(checks, progress=step)
-    found = result(outcomes)
-    show(found, **formats)
-    if not all(one.passed for one in outcomes):
+    show(result(outcomes), **formats)
+    if not all(outcome.passed for outcome in outcomes):
         raise SystemExit(GATE_FAILED)

@@ -5,8 +5,13 @@ from typing import Any
 
 import click
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
+from verify.convert import convert, typed
 from verify.errors import InputError
+from verify.quantities.base import QUANTITIES
+from verify.scene.load import load_scene, tables_read, type_at
+from verify.studies.sweep import Sweep
 
 
 @click.command(cls=shared.BeamCommand)
@@ -32,28 +37,23 @@ def sweep(
     FILE has JSON lines: a kill or Ctrl-C loses only what is being computed, the same call computes the rest.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.convert import convert, typed
-    from verify.quantities.base import QUANTITIES
-    from verify.scene.load import load_scene, type_at
-    from verify.studies.sweep import Sweep
-
     quantities = [word for word in words if "=" not in word]
     pairs = [word.partition("=") for word in words if "=" in word]
     kinds = {key: kind for name in quantities for key, kind in QUANTITIES.named(name).types.items()}
     lists: dict[str, list[Any]] = {}
     for key, _, text in pairs:
         kind, values = type_at(key) if "." in key else kinds.get(key), typed(text, tuple[int, ...], key)
-        lists[key] = [typed(one, kind, key) if isinstance(one, str) else one for one in values]
+        lists[key] = [typed(value, kind, key) if isinstance(value, str) else value for value in values]
     if len(lists) < len(pairs):
         raise InputError("KEY = VALUES: one key occurs twice, give each once")
     if lists and not quantities:
         raise InputError("QUANTITY is missing: name one before KEY=VALUES, see `verify quantities`")
     over = {key: values for key, values in lists.items() if len(values) > 1 or "." in key}
     arguments = {key: values[0] for key, values in lists.items() if key not in over}
-    loaded = load_scene(scene, overrides)
-    own = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
-    study = own if quantities else loaded.studies.get("sweep") or convert({}, Sweep, "sweep")
+    parts = tables_read(quantities) if quantities else None
+    loaded = load_scene(scene, overrides, parts and parts | {key.partition(".")[0] for key in over if "." in key})
+    words_given = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
+    study = words_given if quantities else loaded.studies.get("sweep") or convert({}, Sweep, "sweep")
     study.check(loaded)
     with shared.progress(quiet=any(formats.values())) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step, Path(file) if file else None)

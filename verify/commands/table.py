@@ -2,7 +2,17 @@
 
 import click
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
+from verify.convert import convert
+from verify.errors import InputError
+from verify.scene.load import load_scene, type_at
+from verify.studies.base import STUDIES
+
+IN_TIME = {"drive", "slider", "motion"}
+READS: dict[str, set[str]] = {"spectrum": set(), "convergence": set(), "wave": {"drive"}}
+READS |= {"motion": IN_TIME, "motor": IN_TIME, "control": IN_TIME}
+"""Tables of a scene that a study reads besides the beam and its own section; other studies may read any."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -20,19 +30,15 @@ def table(
 
     Example: `verify table steel-cantilever modes=1-5 counts=10,20,49 wall=gregory,half`
     """
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.convert import convert
-    from verify.errors import InputError
-    from verify.scene.load import load_scene, type_at
-    from verify.studies.base import STUDIES, studies_of
-
-    known = STUDIES.named(study).__struct_fields__
+    keys = STUDIES.named(study).__struct_fields__
     for key, _, text in (option.partition("=") for option in options):
-        home = next((f"{one}.{key}" for one in ("beam", "drive", "slider") if type_at(f"{one}.{key}") is not None), "")
-        if home and key not in known:
+        homes = (f"{table}.{key}" for table in ("beam", "drive", "slider"))
+        home = next((home for home in homes if type_at(home) is not None), "")
+        if home and key not in keys:
             raise InputError(f"{study}.{key} is not a known key: give --set {home}={text}")
-    loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)))
-    chosen = dict(studies_of(loaded)).get(study) or convert({}, STUDIES[study], study)
+    parts = READS[study] | {study} if study in READS else None
+    loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)), parts)
+    chosen = loaded.studies.get(study) or convert({}, STUDIES[study], study)
     chosen.check(loaded)
     with shared.progress(chosen.steps or None, quiet=any(formats.values()), lines=chosen.steps > 0) as step:
         result = chosen.run(loaded, SolutionCache(loaded.beam), step)

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
+from functools import cache
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from verify.arrays import ComplexArray
@@ -82,6 +83,7 @@ class BeamModel(ABC):
             )
 
     @classmethod
+    @cache
     def settings(cls) -> tuple[str, ...]:
         """Names of the settings: the fields after the beam and the number of parts."""
         return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]

@@ -31,7 +31,7 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
         return self.gate.id
 
 
-def run_gate(gate: Gate, scene: Scene, cache: "SolutionCache") -> GateResult:
+def run_gate(gate: Gate, scene: Scene, cache: SolutionCache) -> GateResult:
     """Evaluate one gate. Never raises: a gate that cannot be evaluated fails with the reason."""
     start = perf_counter()
     unit, value, fraction = "", None, None

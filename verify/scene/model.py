@@ -16,7 +16,7 @@ from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device
 from verify.problem.slider import Slider
 from verify.problem.supports import check_free
-from verify.studies.base import studies_of
+from verify.scene.file import NamedBeam
 from verify.validation import check_number, unit
 
 if TYPE_CHECKING:
@@ -49,9 +49,9 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     def on(self, beam: Beam) -> Device:
         """The device in the beam's coordinate. Raises InputError off the beam or on a support."""
-        own = {name: getattr(self, name) for name in Device.__struct_fields__}
-        own["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
-        device = Device(**own)
+        fields = {name: getattr(self, name) for name in Device.__struct_fields__}
+        fields["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
+        device = Device(**fields)
         device.check_on(beam)
         return device
 
@@ -153,8 +153,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     @property
     def limits(self) -> str:
         """'at least 0.02, at most 0.03'."""
-        given = (("at least", self.at_least), ("at most", self.at_most))
-        return ", ".join(f"{side} {value:g}" for side, value in given if value is not None)
+        sides = (("at least", self.at_least), ("at most", self.at_most))
+        return ", ".join(f"{side} {value:g}" for side, value in sides if value is not None)
 
 
 class Gate(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -224,20 +224,12 @@ class Claim(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return low <= computed <= high
 
 
-class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Scene(NamedBeam, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What exists, what is published about it, and which gates and studies run. Raises InputError.
 
     In a scene file the sections of studies stand beside these keys: [spectrum], [motor], ... (see `verify schema`).
     """
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
-    """Name of the scene and of its reports."""
-    title: str = ""
-    """Heading of its report."""
-    description: str = ""
-    """Text below the heading."""
-    beam: Beam
-    """The beam."""
     drive: Drive | None = None
     """Harmonic excitation."""
     slider: Slider | None = None
@@ -246,7 +238,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Published statements, compared with computed values."""
     gate: tuple[Gate, ...] = ()
     """Acceptance criteria."""
-    studies: dict[str, Any] = {}
+    studies: dict[str, Any] = msgspec.field(default_factory=dict)
     """Studies by the names of their sections; in a file they stand at the top level."""
 
     def __post_init__(self) -> None:
@@ -255,10 +247,10 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def _errors(self) -> Iterator[str]:
         """A sentence for every inconsistency between parts that are right by themselves."""
         for table, entries in (("gate", self.gate), ("claim", self.claim)):
-            ids = [one.id for one in entries]
-            for one in dict.fromkeys(ids):
-                if ids.count(one) > 1:
-                    yield f"{table}.{one} occurs twice: give every {table} its own id"
+            ids = [entry.id for entry in entries]
+            for name in dict.fromkeys(ids):
+                if ids.count(name) > 1:
+                    yield f"{table}.{name} occurs twice: give every {table} its own id"
         try:
             if self.drive is not None:
                 check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
@@ -277,14 +269,6 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 self.slider.initial_position(self.beam)
         except InputError as error:
             yield from error.sentences
-            return
-        for name, study in (self.studies | dict(studies_of(self))).items():
-            if (also := self.beside) and name in self.studies and not (study.devices or also in study.accepts):
-                yield f"{also}: [{name}] does not model it, leave out [{name}] or {also}"
-            try:
-                study.check(self)
-            except InputError as error:
-                yield from error.sentences
 
     @property
     def motion(self) -> Any:
@@ -309,7 +293,9 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def beside(self) -> str:
         """The field of the drive that few quantities and studies model: a device or a shunt; else empty."""
-        return "drive.device" if self.devices else "drive.shunt" if self.shunts else ""
+        if self.drive is None:
+            return ""
+        return "drive.device" if self.drive.device else "drive.shunt" if self.drive.shunt else ""
 
     def in_time(self, forces: tuple[PointForce, ...], frequency_hz: float) -> "BeamInTime":
         """Beam and loads of the drive in time, with these amplitudes. Raises InputError for displacements."""

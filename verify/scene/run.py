@@ -8,15 +8,21 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
+from verify.analysis.margins import linearity_margins, sag_margins
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, Verdict, verdict_of, void
 from verify.blas import one_blas_thread
-from verify.errors import InputError
+from verify.errors import InputError, raise_all
+from verify.quantities.base import QUANTITIES
+from verify.quantities.waves import FieldOptions, driven_case
 from verify.scene.gates import GateResult, run_gate
-from verify.scene.load import load_scene
+from verify.scene.load import load_scene, study_errors
 from verify.scene.model import Scene
+from verify.scene.warnings import scene_warnings
+from verify.studies.base import STUDIES, result_of, studies_of
+from verify.waves.driven_case import driven
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.verdict import Margin, Verdict
     from verify.report.result import Result
 
 Progress: TypeAlias = Callable[[str], None]
@@ -44,7 +50,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
     """Implausible units and gates."""
-    margins: "tuple[Margin, ...]" = ()
+    margins: tuple[Margin, ...] = ()
     """Linear theory under the drive and under the weight of the slider."""
     seconds: float
 
@@ -69,22 +75,20 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return f"{text} ({skipped} skipped: --set changes the values that they are stated for)" if skipped else text
 
     @property
-    def verdict(self) -> "Verdict":
+    def verdict(self) -> Verdict:
         """The worst of all studies, of linear theory under the drive, and of the gates."""
-        from verify.analysis.verdict import Verdict, verdict_of, void
-
         margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
         judged = any(gate.passed is not None for gate in self.gates)
         if self.failed:
-            failed = ", ".join(one.id for one in self.failed)
+            failed = ", ".join(result.id for result in self.failed)
             margins.append(void("gates", f"{self.gates_in_words}, {failed}", leads=True))
         elif not (judged or self.results):
             margins.append(void("the run", "no study and no gate ran", "add a gate or a study, see docs/your-beam.md"))
-        found = verdict_of(margins)
-        if found.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
-            return found
+        verdict = verdict_of(margins)
+        if verdict.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
+            return verdict
         headline = f"Trusted as far as its gates: {self.gates_in_words}."
-        return Verdict(level="trusted", headline=headline, margins=found.margins)
+        return Verdict(level="trusted", headline=headline, margins=verdict.margins)
 
 
 @one_blas_thread()
@@ -96,11 +100,6 @@ def run_scene(
     Overrides ('beam.length=0.4') skip the gates stated for the values of the file. Raises InputError where the scene
     is invalid or a study cannot run; a gate that fails or cannot be evaluated is in the result.
     """
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.quantities.base import QUANTITIES
-    from verify.scene.warnings import scene_warnings
-    from verify.studies.base import result_of, studies_of
-
     start = perf_counter()
     loaded, rows = _planned(scene, overrides)
     cache = SolutionCache(loaded.beam)
@@ -133,12 +132,12 @@ def plan(scene: Scene | str | Path, overrides: Sequence[str] = ()) -> tuple[Plan
 
 def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene, list[PlanRow]]:
     """The scene, and its gates in their order, then the studies."""
-    from verify.studies.base import STUDIES, studies_of
-
     loaded = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
+    running = dict(studies_of(loaded))
+    if loaded is scene:  # which may be built in Python
+        raise_all(list(study_errors(loaded, running | loaded.studies)))
     skip = skipped_gates(loaded, overrides)
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
-    running = [name for name, _ in studies_of(loaded)]
     rows += [PlanRow(name, "study", True) for name in running]
     absent = {name: f"no {'[[claim]]' if name == 'claims' else f'[{name}]'} in the scene" for name in STUDIES}
     absent |= dict.fromkeys(loaded.studies, "settings of quantities in time: the study needs [slider]")
@@ -152,8 +151,6 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     A gate runs where its quantity reads no overridden table and its arguments are its own, or where its band was set
     as well.
     """
-    from verify.quantities.base import QUANTITIES
-
     keys = list(dict.fromkeys(text.partition("=")[0].strip() for text in overrides))
     skip = {}
     for i, gate in enumerate(scene.gate):
@@ -170,14 +167,11 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     return skip
 
 
-def _margins(scene: Scene, cache: "SolutionCache") -> "tuple[Margin, ...]":
+def _margins(scene: Scene, cache: SolutionCache) -> tuple[Margin, ...]:
     """Margins of the exact steady motion; none without a drive and at a resonance."""
-    from verify.analysis.margins import linearity_margins, sag_margins
-    from verify.quantities.waves import FieldOptions, driven_case
-    from verify.waves.driven_case import driven
-
-    found = sag_margins(cache, scene.slider) if scene.slider else []
+    margins = sag_margins(cache, scene.slider) if scene.slider else []
     if scene.forces:
         with suppress(InputError):
-            found += linearity_margins("the drive", driven(driven_case(scene, FieldOptions()), cache), "drive it less")
-    return tuple(found)
+            field = driven(driven_case(scene, FieldOptions()), cache)
+            margins += linearity_margins("the drive", field, "drive it less")
+    return tuple(margins)

@@ -1,15 +1,15 @@
 """Plausibility warnings: values that look like another unit, gates that accept any negative error."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from verify.errors import InputError
+from verify.linear.mesh import cut_pieces
+from verify.problem.beam import Beam
+from verify.problem.cross_section import Piece
 from verify.problem.slider import GRAVITY
 from verify.scene.model import Scene
-
-if TYPE_CHECKING:
-    from verify.problem.beam import Beam
-    from verify.problem.cross_section import Piece
 
 SOUND = (30.0, 30_000.0)  # sqrt(E/rho) of materials, soft rubber to diamond, m/s
 MAX_DENSITY = 25_000.0  # above osmium, kg/m^3
@@ -23,17 +23,17 @@ ELEMENTS = 50  # of that sag, which is exact at the nodes of any number
 def scene_warnings(scene: Scene) -> tuple[str, ...]:
     """A sentence for each value that looks like another unit, and for each gate without a limit of negative errors."""
     beam = scene.beam
-    found = dict.fromkeys(one for piece in beam.pieces for one in _material(piece))
+    material = dict.fromkeys(text for piece in beam.pieces for text in _material(piece))
     one_sided = (
         f"gate {gate.id}: at_most alone accepts any negative value: give at_least too, or expect and within"
         for gate in scene.gate
         if gate.at_most is not None and gate.at_least is None
         if gate.quantity.endswith("error") and not gate.quantity.endswith(("shape_error", "curvature_error"))  # norms
     )
-    return (*found, *_lengths(beam), *one_sided)
+    return (*material, *_lengths(beam), *one_sided)
 
 
-def _material(piece: "Piece") -> Iterator[str]:
+def _material(piece: Piece) -> Iterator[str]:
     if piece.youngs_modulus is None or not piece.area:
         return
     density = piece.mass_per_length / piece.area
@@ -47,11 +47,11 @@ def _material(piece: "Piece") -> Iterator[str]:
         yield f"beam.density = {density:.6g} kg/m³ is above that of any solid: check the unit (7.85 g/cm³ is 7850)"
 
 
-def _lengths(beam: "Beam") -> Iterator[str]:
+def _lengths(beam: Beam) -> Iterator[str]:
     """Thicker or much wider than long, too heavy, or bent by its own weight by more than its length."""
-    known = [(2.0 * piece.extreme_fibre, piece.area) for piece in beam.pieces if piece.extreme_fibre and piece.area]
-    thickness = max((height for height, _ in known), default=0.0)
-    width = max((area / height for height, area in known), default=0.0)
+    sections = [(2.0 * piece.extreme_fibre, piece.area) for piece in beam.pieces if piece.extreme_fibre and piece.area]
+    thickness = max((height for height, _ in sections), default=0.0)
+    width = max((area / height for height, area in sections), default=0.0)
     mass = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
     if thickness > beam.length:
         yield f"beam: {thickness:.3g} m thick and {beam.length:.3g} m long, check the units (2 mm is 0.002)"
@@ -65,16 +65,13 @@ def _lengths(beam: "Beam") -> Iterator[str]:
         yield f"beam: its own weight bends {beam.length:.3g} m by {sag:.3g} m, check the units (137 mm is 0.137)"
 
 
-def static_sag(beam: "Beam") -> float:
+def static_sag(beam: Beam) -> float:
     """Largest deflection of a horizontal beam under its own weight and that of attached masses, m.
 
     By finite elements with sections, springs, foundation and axial force. 0 for a beam with rigid motions, and for one
     that buckles.
     """
-    import numpy as np
-
     from verify.fem_beam import HermiteModel
-    from verify.linear.mesh import cut_pieces
 
     if beam.rigid_motions:
         return 0.0
