@@ -25,11 +25,10 @@ from tests.reference.discrete_beams import rigid_links, varying_beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed
 from verify.engines import ENGINES, chain_of
-from verify.engines.description import in_plane
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.options import Support, Theory
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, in_plane
 from verify.segment_model import SegmentModel
 
 PAIRS: tuple[tuple[Support, Support], ...]

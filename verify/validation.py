@@ -83,22 +83,20 @@ def check_number(
     at_most: float | None = None,
 ) -> None:
     """Raise InputError unless `value` is finite and within the limits, of which `above` and `below` are open."""
-    number = python_scalar(value)
-    if type(number) in (float, int) and -inf < number < inf:
-        inside = (above is None or above < number) and (below is None or number < below)
-        if inside and (at_least is None or at_least <= number) and (at_most is None or number <= at_most):
+    if isinstance(value, float | int) and -inf < value < inf and not isinstance(value, bool):
+        inside = (above is None or above < value) and (below is None or value < below)
+        if inside and (at_least is None or at_least <= value) and (at_most is None or value <= at_most):
             return
     annotation: Any = Annotated[float, unit(unit_name, gt=above, ge=at_least, lt=below, le=at_most)]
-    convert(number, annotation, field)
+    convert(python_scalar(value), annotation, field)
 
 
 def check_integer(field: str, value: object, least: int, most: int | None = None) -> None:
     """Raise InputError unless `value` is a whole number from `least` to `most`."""
-    number = python_scalar(value)
-    if type(number) is int and least <= number <= (inf if most is None else most):
+    if type(value) is int and least <= value <= (inf if most is None else most):
         return
     annotation: Any = Annotated[int, Meta(ge=least, le=most)]
-    convert(number, annotation, field)
+    convert(python_scalar(value), annotation, field)
 
 
 def check_position(field: str, x: float, length: float) -> None:

@@ -9,7 +9,15 @@ from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin
 from verify.commands.choose import relative_error
-from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.commands.shared import (
+    CHAINS,
+    GATE_FAILED,
+    BeamCommand,
+    format_options,
+    overrides_option,
+    scene_argument,
+    show,
+)
 from verify.convert import typed
 from verify.engines.description import MOST_LINKS, RULES, RigidChain, describe
 from verify.engines.judgement import judge_file
@@ -20,8 +28,6 @@ from verify.report.result import Column, Result, Table
 from verify.scene.file import load_beam
 from verify.validation import Relative
 
-CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
-"""Suffixes of chains of rigid bodies that `verify compare` judges."""
 FIRST = 4
 """Joints that the terminal always shows."""
 COMPARED = "gregory", "half", "full", "rigid"

@@ -5,7 +5,6 @@ from pathlib import Path
 import click
 
 from verify.commands import shared
-from verify.commands.chain import CHAINS, judge_chain
 from verify.compare.compare import Options
 from verify.compare.compare import compare as compare_list
 from verify.compare.reading import UNITS, read_frequencies, read_shapes, read_words, solve_model
@@ -69,7 +68,9 @@ def compare(
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
-    if any(Path(word).suffix.lower() in CHAINS for word in (scene, *words)):
+    if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
+        from verify.commands.chain import judge_chain  # and the engines
+
         return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats)
     if bool(words) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")

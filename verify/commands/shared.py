@@ -19,6 +19,8 @@ from verify.report.result import Result, to_json
 if TYPE_CHECKING:
     from rich.console import Console
 
+CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
+"""Suffixes of chains of rigid bodies."""
 GATE_FAILED = 1
 """Exit status where a gate or check failed."""
 

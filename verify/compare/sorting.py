@@ -17,7 +17,7 @@ from verify.compare.reading import UNITS, FrequencyList
 from verify.errors import InputError
 from verify.exact.closed_forms import rod_frequency_hz
 from verify.options import THEORIES
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, in_plane
 
 RIGID = 3e-3
 """Fraction of the next frequency below which leading ones are rigid-body motions, unless the beam has such a gap."""
@@ -58,8 +58,6 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
 
     Raises InputError for frequencies that do not ascend and for a list without an elastic one.
     """
-    from verify.engines.description import in_plane
-
     tried: list[tuple[FrequencyList, int]] = []
     for unit in dict.fromkeys((listed.unit, *UNITS)):
         one = msgspec.structs.replace(listed, unit=unit)

@@ -24,7 +24,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
 from verify.options import Theory
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
 from verify.validation import check_choice, check_integer, check_number, check_type
@@ -301,15 +301,3 @@ def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, floa
     links, along = link_at(chain, np.array([position]))
     link = int(links[0])
     return [(link - 1, 0.5), (link, 0.5)] if turning and along[0] == 0.0 and link else [(link, 1.0)]
-
-
-def in_plane(beam: Beam, axis: Axis) -> Beam:
-    """The beam, for "width" turned by 90 degrees about its axis, without springs."""
-
-    def turned(one: Any) -> Any:
-        sizes = msgspec.structs.asdict(one)
-        return msgspec.structs.replace(one, width=sizes["thickness"], thickness=sizes["width"])
-
-    if axis != "width":
-        return beam
-    return msgspec.structs.replace(turned(beam), section=tuple(map(turned, beam.section)), spring=())  # type: ignore[no-any-return]

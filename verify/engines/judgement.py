@@ -14,10 +14,10 @@ import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.description import RULES, Hinge, Joint, Link, RigidChain, in_plane
+from verify.engines.description import RULES, Hinge, Joint, Link, RigidChain
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
 from verify.segments.walls import WALLS, wall_factors

@@ -177,6 +177,14 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return sqrt(self.bending_stiffness / self.mass_per_length)
 
 
+def in_plane(beam: Beam, axis: str) -> Beam:
+    """The beam, for the axis "width" turned by 90 degrees about its own, without springs."""
+    if axis != "width":
+        return beam
+    section = tuple(replace(part, width=part.thickness, thickness=part.width) for part in beam.section)
+    return replace(beam, width=beam.thickness, thickness=beam.width, section=section, spring=())
+
+
 def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
     """Raise InputError unless a frequency is positive and its wavelength is not too short for the beam."""
     check_number(field, frequency_hz, "hertz", above=0)
