@@ -24,72 +24,32 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
 The command line is `verify --help`.
 """
 
+import ast
+from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
 
-if TYPE_CHECKING:
-    from verify import travelling_wave
-    from verify.actuators.materials import PiezoMaterial
-    from verify.actuators.on_beam import Mounted, on_beam
-    from verify.actuators.patch import Patch
-    from verify.actuators.shunt import Load
-    from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
-    from verify.analytic_modes import ExactModel
-    from verify.chain.statics import Bent, bend
-    from verify.dynamics.arguments import Excitation, Keep, PrescribedSlider, Step
-    from verify.dynamics.free_vibration import FreeVibration, free_vibration
-    from verify.dynamics.result import Motion
-    from verify.dynamics.simulate import simulate
-    from verify.errors import InputError
-    from verify.fem_beam import HermiteModel
-    from verify.linear.field import HarmonicField
-    from verify.linear.modes import Modes
-    from verify.problem.beam import Beam, PointForce, PointMoment
-    from verify.problem.cross_section import Section
-    from verify.problem.device import Device
-    from verify.problem.point_attachments import PointMass, PointSpring
-    from verify.problem.slider import Contact, Foot, Slider
-    from verify.scene.load import load_scene
-    from verify.scene.run import run_scene
-    from verify.segment_model import SegmentModel
-    from verify.travelling_wave import WaveMeasures
-
-__all__ = [
-    "Bar31", "Bar33", "Beam", "Bent", "Contact", "Device", "EndMass", "ExactModel", "Excitation", "Foot",
-    "FreeVibration", "HarmonicField", "HermiteModel", "InputError", "Keep", "Langevin", "Load", "Modes", "Motion",
-    "Mounted", "Patch", "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring",
-    "PrescribedSlider", "Section", "SegmentModel", "Slider", "Stack", "Step", "WaveMeasures", "__version__", "bend",
-    "free_vibration", "load_scene", "on_beam", "run_scene", "simulate", "travelling_wave",
-]  # fmt: skip
 __version__ = "0.1.0"
 
-_HOME = {
-    "Beam": "problem.beam", "PointForce": "problem.beam", "PointMoment": "problem.beam", "Device": "problem.device",
-    "Section": "problem.cross_section",
-    "PointMass": "problem.point_attachments", "PointSpring": "problem.point_attachments", "Contact": "problem.slider",
-    "Foot": "problem.slider", "Slider": "problem.slider", "ExactModel": "analytic_modes", "HermiteModel": "fem_beam",
-    "SegmentModel": "segment_model", "HarmonicField": "linear.field", "Modes": "linear.modes",
-    "WaveMeasures": "travelling_wave", "simulate": "dynamics.simulate", "Motion": "dynamics.result",
-    "Excitation": "dynamics.arguments", "PrescribedSlider": "dynamics.arguments", "Step": "dynamics.arguments",
-    "Keep": "dynamics.arguments",
-    "free_vibration": "dynamics.free_vibration", "FreeVibration": "dynamics.free_vibration",
-    "bend": "chain.statics", "Bent": "chain.statics", "PiezoMaterial": "actuators.materials",
-    "Stack": "actuators.transducers", "Bar33": "actuators.transducers", "Bar31": "actuators.transducers",
-    "Langevin": "actuators.transducers", "EndMass": "actuators.transducers", "Patch": "actuators.patch",
-    "Load": "actuators.shunt", "Mounted": "actuators.on_beam", "on_beam": "actuators.on_beam",
-    "load_scene": "scene.load", "run_scene": "scene.run", "InputError": "errors",
-}  # fmt: skip
+
+@cache
+def _homes() -> dict[str, str]:
+    """Module of every public name: the stub beside this file, which type checkers read, imports them all."""
+    stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text("utf-8"))
+    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
+    return {alias.name: str(node.module) for node in imports for alias in node.names}
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Import a public name at its first use."""
-    if name == "travelling_wave":
-        return import_module("verify.travelling_wave")
-    if name not in _HOME:
+    if name == "__all__":
+        return __dir__()
+    if name.startswith("_") or name not in _homes():
         raise AttributeError(f"module 'verify' has no attribute {name!r}")
-    return getattr(import_module(f"verify.{_HOME[name]}"), name)
+    home = _homes()[name]
+    return import_module(f"verify.{name}") if home == "verify" else getattr(import_module(home), name)
 
 
 def __dir__() -> list[str]:
     """All public names, imported or not."""
-    return sorted(__all__)
+    return sorted([*_homes(), "__version__"])

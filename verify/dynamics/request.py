@@ -280,7 +280,7 @@ def _check_continued(before: EndState, beam: Beam, model: str, count: int | None
     for name, here, there in (("model", model, before.model), ("count", count, before.count)):
         if here != there:
             raise InputError(f"{name} = {here!r}: start is a run with {name} = {there!r}, give the same")
-    if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
+    if before.beam != beam and replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
         raise InputError("start is a run of another beam: give the same beam (loss_factor may differ)")
     if before.contact is None or not sliders:
         return
