@@ -74,13 +74,13 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
 
 def _tagged_errors(data: dict[str, Any], tables: dict[str, Any], where: str) -> Iterator[str]:
     """A sentence for every error of a table whose key `kind` selects one of several structs."""
-    own, names = data.get("kind"), tuple(tables)
-    if isinstance(own, str) and own in tables:  # a list has no hash
-        yield from _errors({key: value for key, value in data.items() if key != "kind"}, tables[own], where)
-    elif own is None:
+    tag, names = data.get("kind"), tuple(tables)
+    if isinstance(tag, str) and tag in tables:  # a list has no hash
+        yield from _errors({key: value for key, value in data.items() if key != "kind"}, tables[tag], where)
+    elif tag is None:
         yield f"{where}.kind is missing: give one of {', '.join(names)}"
     else:
-        yield f"{where}.kind = {shown(own)} is not known: {near_name(str(own), names)}"
+        yield f"{where}.kind = {shown(tag)} is not known: {near_name(str(tag), names)}"
 
 
 def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
@@ -94,8 +94,8 @@ def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
         if isinstance(value, list | tuple):
             return f"{subject}: give one number, with a point before its decimals"
         if isinstance(value, str) and _WITH_UNIT.match(value):
-            own = extra_of(kind, "unit")
-            return f"{subject}: give a number alone, in {own if own and own != 'm' else 'SI units: 0.08 for 80 mm'}"
+            si = extra_of(kind, "unit")
+            return f"{subject}: give a number alone, in {si if si and si != 'm' else 'SI units: 0.08 for 80 mm'}"
         metas = metas_of(kind)
         limits = [f"{text} {edge:g}" for name, text in _LIMITS for m in metas if (edge := getattr(m, name)) is not None]
         number = f"a {'finite' if float in arms else 'whole'} number {' and '.join(limits)}".rstrip()
@@ -113,7 +113,7 @@ def arms_of(kind: Any) -> tuple[Any, ...]:
     if hasattr(kind, "__metadata__"):
         return arms_of(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
-        return tuple(arm for one in get_args(kind) for arm in arms_of(one))
+        return tuple(arm for member in get_args(kind) for arm in arms_of(member))
     return (kind,)
 
 
@@ -187,7 +187,8 @@ def typed(text: str, kind: Any, field: str) -> Any:
     """
     value, entry = literal(text, field), entry_of(kind)
     if entry is not None and int in arms_of(entry):
-        return [one for part in (value if isinstance(value, list) else [value]) for one in _spelt_out(part, field)]
+        parts = value if isinstance(value, list) else [value]
+        return [number for part in parts for number in _spelt_out(part, field)]
     if entry is not None and str in arms_of(entry) and isinstance(value, str):
         return [value]
     if extra_of(kind, RELATIVE) and isinstance(value, str) and value.endswith("%"):
@@ -201,9 +202,9 @@ def typed(text: str, kind: Any, field: str) -> Any:
 
 def _spelt_out(part: Any, field: str) -> list[Any]:
     """'10-50:10' as whole numbers, anything else as its only entry."""
-    if (found := re.fullmatch(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*", str(part))) is None:
+    if (span := re.fullmatch(r"\s*(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?\s*", str(part))) is None:
         return [part]
-    start, end, step = int(found[1]), int(found[2]), int(found[3] or 1)
+    start, end, step = int(span[1]), int(span[2]), int(span[3] or 1)
     if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:
         raise InputError(
             f"{field} = {shown(part)}: write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5 or 10-50:10"

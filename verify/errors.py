@@ -51,15 +51,15 @@ def raise_all(sentences: Sequence[str], most: int = 1_000_000) -> None:
         raise InputError(*sentences[:most], *[f"and {len(sentences) - most} more"] * (len(sentences) > most))
 
 
-def near_name(word: str, known: Sequence[str]) -> str:
+def near_name(word: str, names: Sequence[str]) -> str:
     """The remedy for an unknown name: the nearest known name, else the first `NAMES` known names."""
     from difflib import get_close_matches
 
-    plain = {name.casefold(): name for name in known}
+    plain = {name.casefold(): name for name in names}
     if close := get_close_matches(word.casefold(), plain, n=1):
         return f"did you mean {plain[close[0]]!r}?"
-    more = f" and {len(known) - NAMES} more" if len(known) > NAMES + 1 else ""
-    return f"known are {', '.join(known[:NAMES] if more else known)}{more}"
+    more = f" and {len(names) - NAMES} more" if len(names) > NAMES + 1 else ""
+    return f"known are {', '.join(names[:NAMES] if more else names)}{more}"
 
 
 def one_line(text: str) -> str:

@@ -12,7 +12,7 @@ T = TypeVar("T")
 class Registry(Mapping[str, T], Generic[T]):
     """Members by name, each imported at its first use.
 
-    `what` is a member's name in messages. Members of this package are `own`, objects with a `name`, and `homes`,
+    `what` is a member's name in messages. Members of this package are `members`, objects with a `name`, and `homes`,
     'module:attribute' by name; others come from entry points of `group`, which are looked up for an unknown name or
     where all members are listed. `refuses` returns what is wrong with a member of another package, '' if nothing. A
     class that is imported is called to make the member unless `classes`.
@@ -22,13 +22,13 @@ class Registry(Mapping[str, T], Generic[T]):
         self,
         what: str,
         group: str,
-        own: Iterable[T] = (),
+        members: Iterable[T] = (),
         homes: Mapping[str, str] | None = None,
         refuses: Callable[[T], str] = lambda member: "",
         classes: bool = False,
     ) -> None:
         self._what, self._group, self._refuses, self._classes = what, group, refuses, classes
-        self._members: dict[str, Any] = {one.name: one for one in own} | dict(homes or {})  # type: ignore[attr-defined]
+        self._members: dict[str, Any] = {member.name: member for member in members} | dict(homes or {})  # type: ignore[attr-defined]
         self._unusable: dict[str, str] | None = None
         self.built_in = tuple(self._members)
         """Names of the package's own members."""

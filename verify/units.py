@@ -21,9 +21,9 @@ ALIKE = str.maketrans({"^": "", "³": "3", "µ": "u", "μ": "u"})
 def in_si(text: str, si: str, field: str) -> float:
     """A number with one of the units of `si`, or with none in SI: '40 mm' is 0.04 of 'm'. Raises InputError."""
     units = FACTORS.get(si, {})
-    found = re.fullmatch(rf"\s*({NUMBER})\s*(\S*)\s*", text)
-    unit = found[2].translate(ALIKE) if found else ""
-    if found is None or (unit and unit not in units):
-        known = f" with one of the units {', '.join(units)}" if units else ""
-        raise InputError(f"{field} = {shown(text)}: give a number{known}, without a unit it is in {si}")
-    return float(found[1]) * units.get(unit, 1.0)
+    match = re.fullmatch(rf"\s*({NUMBER})\s*(\S*)\s*", text)
+    unit = match[2].translate(ALIKE) if match else ""
+    if match is None or (unit and unit not in units):
+        choices = f" with one of the units {', '.join(units)}" if units else ""
+        raise InputError(f"{field} = {shown(text)}: give a number{choices}, without a unit it is in {si}")
+    return float(match[1]) * units.get(unit, 1.0)

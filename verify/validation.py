@@ -130,6 +130,6 @@ def as_tuple(field: str, value: Any, *types: type[Item]) -> tuple[Item, ...]:
     items = (value,) if single else tuple(value)
     for entry in items:
         if not isinstance(entry, types):
-            names = " or a ".join(one.__name__ for one in types)
+            names = " or a ".join(kind.__name__ for kind in types)
             raise InputError(f"{field} has {shown(entry)}: give a {names}, or a list of them")
     return items

@@ -20,7 +20,7 @@ def models(tmp_path, monkeypatch):
     (info / "entry_points.txt").write_text("[toys.models]\nfar = toys:FAR\nlost = no_such_module:LOST\n")
     (tmp_path / "toys.py").write_text("from types import SimpleNamespace\nFAR = SimpleNamespace(name='far')\n")
     monkeypatch.syspath_prepend(tmp_path)
-    return Registry("model", "toys.models", own=[NEAR])
+    return Registry("model", "toys.models", members=[NEAR])
 
 
 def test_broken_entry_points_are_left_out(models):

@@ -12,8 +12,7 @@ import msgspec
 import pytest
 
 from verify.analysis.verdict import Margin
-from verify.report.index import failed_line, index_result, scene_line, write_index
-from verify.report.page import run_page
+from verify.report.page import failed_line, index_result, run_page, scene_line, write_index
 from verify.report.result import Column, Table
 
 VOID = {"meta", "link", "img", "source", "br"}

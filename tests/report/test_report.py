@@ -16,14 +16,12 @@ from rich.console import Console
 from verify.analysis.verdict import void
 from verify.errors import InputError
 from verify.report import archive
-from verify.report.archive import read_runs, save_run, saved_in
+from verify.report.archive import compare_runs, read_runs, save_run, saved_in
 from verify.report.beam_drawing import beam_figure
-from verify.report.diff import compare_runs
 from verify.report.page import run_page
 from verify.report.plotting import MODEL_COLORS, drawn, figure_files, movie_image
 from verify.report.result import Column, Figure, Result, Table, to_json
-from verify.report.summary import run_data
-from verify.report.terminal import print_run
+from verify.report.summary import print_run, run_data
 from verify.scene.load import scene_from
 from verify.scene.model import Scene
 

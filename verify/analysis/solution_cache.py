@@ -104,8 +104,8 @@ class SolutionCache:
         return self._modes[key]
 
     def _key(self, model: str, count: int, settings: Settings) -> tuple[str, int, Settings]:
-        known = MODELS.named(model).settings()
-        return model, count, tuple(one for one in settings if one[0] in known)
+        names = MODELS.named(model).settings()
+        return model, count, tuple(setting for setting in settings if setting[0] in names)
 
     def exact_hz(self, mode: int, theory: str = EULER) -> float:
         """The exact frequency by a theory, Hz. Raises InputError."""

@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands.shared import GATE_FAILED, format_options, show
-from verify.report.archive import read_runs
-from verify.report.diff import compare_runs
+from verify.report.archive import compare_runs, read_runs
 
 
 @click.command()

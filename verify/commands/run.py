@@ -14,9 +14,8 @@ from verify.errors import InputError
 from verify.files import writable_folder
 from verify.parallel import map_processes
 from verify.report.archive import Saved, report_name, save_run
-from verify.report.index import failed_line, index_result, scene_line, write_index
-from verify.report.summary import run_data
-from verify.report.terminal import print_run
+from verify.report.page import failed_line, index_result, scene_line, write_index
+from verify.report.summary import print_run, run_data
 from verify.scene.file import packaged_scenes
 from verify.scene.load import load_scene
 from verify.scene.model import Scene

@@ -19,6 +19,7 @@ from verify.linear.registry import MODELS
 from verify.options import Support
 from verify.problem.beam import Beam
 from verify.report.result import Result
+from verify.scene.file import NamedBeam
 from verify.validation import check_integer
 
 SPARE = 4
@@ -44,7 +45,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def compare(
-    scene: Any,
+    scene: NamedBeam,
     listed: FrequencyList,
     shapes: ModeShapes | None = None,
     options: Options | None = None,
@@ -58,25 +59,33 @@ def compare(
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_integer(field, getattr(options, field), 1)
-    known = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
-    listed, rigid, macs, hertz = known.listed, known.rigid, known.macs, known.listed.hertz
-    bending = np.array(known.motions) == BENDING
-    entries, modes = known.entries[bending], known.modes[bending]
+    elastic = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
+    listed, rigid, macs, hertz = elastic.listed, elastic.rigid, elastic.macs, elastic.listed.hertz
+    bending = np.array(elastic.motions) == BENDING
+    entries, modes = elastic.entries[bending], elastic.modes[bending]
     ordered = macs is None and bool(bending.all()) and bool((modes == entries - rigid).all())
     logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
-    data = Data(beam=beam, logs=logs, rounding=rounding, members=members, entries=entries, modes=modes,
-                ordered=ordered, count=options.count)  # fmt: skip
+    data = Data(
+        beam=beam,
+        logs=logs,
+        rounding=rounding,
+        members=members,
+        entries=entries,
+        modes=modes,
+        ordered=ordered,
+        count=options.count,
+    )
     fits = identify(data, progress)
-    columns = [(known.entries + 1).tolist(), (known.modes + 1).tolist(), hertz[known.entries].tolist()]
-    columns += [known.exact.tolist(), [None] * len(bending) if macs is None else macs.tolist(), known.motions]
+    columns = [(elastic.entries + 1).tolist(), (elastic.modes + 1).tolist(), hertz[elastic.entries].tolist()]
+    columns += [elastic.exact.tolist(), [None] * len(bending) if macs is None else macs.tolist(), elastic.motions]
     rows = [Entry(*cells) for cells in zip(*columns, strict=True)]
     disorder = (np.diff(entries[np.argsort(modes, kind="stable")]) < 0).any()
     unlike = 0 if macs is None else len(hertz) - rigid - int((macs >= LOW_MAC).sum())
     supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
-    own = beam.rigid_motions  # in space and along the axis there are more
+    motions = beam.rigid_motions  # in space and along the axis there are more
     messages = {
-        f"The list starts with {rigid} rigid-body motions, the beam of the scene has {own}.": rigid
-        and rigid not in ((own, own + 1, 2 * own, 2 * own + 1, 2 * own + 2) if own else (0,)),
+        f"The list starts with {rigid} rigid-body motions, the beam of the scene has {motions}.": rigid
+        and rigid not in ((motions, motions + 1, 2 * motions, 2 * motions + 1, 2 * motions + 2) if motions else (0,)),
         f"The values are in {listed.unit}, not in {read.unit}.": listed.unit != read.unit and read.declared,
         "Frequencies are not in the order of the modes: see the column entry.": disorder,
         f"{unlike} of the shapes have a MAC below {LOW_MAC} with all modes of the beam: check beam.supports.": unlike,
@@ -151,18 +160,18 @@ def _required(data: Data, fits: Identification, options: Options) -> list[tuple[
         return abs(float(hertz[mode - 1]) / float(exact) - 1.0) if len(hertz) >= mode else np.inf
 
     rows: list[tuple[Any, ...]] = []
-    for one in dict.fromkeys(sized):
-        exact = frequencies_hz(Candidate(model=EXACT, theory=one.theory), beam, None, mode)[-1]
-        sizes, logs = spectrum(beam, one, n_modes)
+    for candidate in dict.fromkeys(sized):
+        exact = frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1]
+        sizes, logs = spectrum(beam, candidate, n_modes)
         counts: list[int | None] = []
         for limit in ERRORS:  # from the interpolated N to the one that is solved
             failing = sizes[~(abs(np.expm1(logs[:, mode - 1] - np.log(exact))) <= limit)]
             count = int(failing[-1]) + 1 if len(failing) else int(sizes[0])
             if count <= sizes[-1]:
-                while error(one, count) > limit:
+                while error(candidate, count) > limit:
                     count += 1
-                while count > 1 and error(one, count - 1) <= limit:
+                while count > 1 and error(candidate, count - 1) <= limit:
                     count -= 1
             counts.append(count if count <= sizes[-1] else None)
-        rows.append((one, mode, *counts))
+        rows.append((candidate, mode, *counts))
     return rows

@@ -34,9 +34,16 @@ UNITS: dict[str, tuple[float, int | float]] = {
 """Units of a list: frequency in Hz = factor * value**power. rad2/s2: squares of omega; s, ms: periods."""
 MOST, MODEL_MODES = 2000, 10
 """Largest number of frequencies of a list; default number of modes of a Python model."""
-_HEADS = {"rad2/s2": r"eigenval|lambda|λ|(omega|ω|w)(\^|\*\*)?[2²]|rad\S*2/s", "rad/s": r"rad|omega|ω|puls|^w\d*$",
-          "ms": r"period.*\bms\b", "s": r"period|^t(_?\w{0,2})?$|^s$", "1/min": r"1/min|rpm|cpm", "kHz": r"khz",
-          "mHz": r"mHz", "Hz": r"hz|hertz|freq|^f(_?\w{0,2})?$|cycles"}  # fmt: skip
+_HEADS = {
+    "rad2/s2": r"eigenval|lambda|λ|(omega|ω|w)(\^|\*\*)?[2²]|rad\S*2/s",
+    "rad/s": r"rad|omega|ω|puls|^w\d*$",
+    "ms": r"period.*\bms\b",
+    "s": r"period|^t(_?\w{0,2})?$|^s$",
+    "1/min": r"1/min|rpm|cpm",
+    "kHz": r"khz",
+    "mHz": r"mHz",
+    "Hz": r"hz|hertz|freq|^f(_?\w{0,2})?$|cycles",
+}
 _MODE = re.compile(r"#|n|no\.?|nr\.?|modes?([ _]?(number|no\.?|nr\.?))?|number|index|i|k", re.IGNORECASE)
 _DIGITS = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?"
 _NUMBER = re.compile(rf"{_DIGITS}|[+-]?(nan|inf)", re.IGNORECASE)
@@ -106,16 +113,16 @@ def read_words(words: Sequence[str], unit: str | None = None) -> FrequencyList |
     if not all(_VALUE.fullmatch(cell) for cell in cells):
         cells = [cell for word in words for cell in re.split(r"[;\s]+", word.strip("[]()")) if cell]
         decimal = len(cells) > 1 and all(re.fullmatch(r"\d+,\d+", cell) for cell in cells)
-        cells = [one for cell in cells for one in ([cell.replace(",", ".")] if decimal else cell.split(",")) if one]
-    found = [_VALUE.fullmatch(cell) for cell in cells]
-    if not cells or not all(found):
+        cells = [part for cell in cells for part in ([cell.replace(",", ".")] if decimal else cell.split(",")) if part]
+    matches = [_VALUE.fullmatch(cell) for cell in cells]
+    if not cells or not all(matches):
         return None
-    units = {one[2] for one in found if one and one[2]}
-    known = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
-    if units and known is None:
+    units = {match[2] for match in matches if match and match[2]}
+    written = next((name for name in UNITS if {u.lower() for u in units} == {name.lower()}), None)
+    if units and written is None:
         text = f"{shown(' '.join(words))}: units {', '.join(sorted(units))}"
         raise InputError(f"frequencies = {text}, give one of --unit")
-    numbers, chosen = [one[1] for one in found if one], unit or known
+    numbers, chosen = [match[1] for match in matches if match], unit or written
     values = _numbers(numbers, "frequencies")
     return listed("frequencies", values, numbers, unit=chosen or "Hz", declared=chosen is not None)
 
@@ -144,8 +151,11 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     numbered = next((k for k, name in enumerate(head) if _MODE.fullmatch(name)), None)
     if not head and table.shape[1] == 2 and not (table[:, 0] % 1.0).any() and (np.diff(table[:, 0]) > 0.0).all():
         numbered = 0
-    units = {k: next((u for u, pattern in _HEADS.items() if re.search(pattern, name, 0 if u == "mHz" else re.I)), None)
-             for k, name in enumerate(head) if k != numbered}  # fmt: skip
+    units = {
+        k: next((u for u, pattern in _HEADS.items() if re.search(pattern, name, 0 if u == "mHz" else re.I)), None)
+        for k, name in enumerate(head)
+        if k != numbered
+    }
     columns = [k for k, matches in units.items() if matches] or [k for k in range(table.shape[1]) if k != numbered]
     best = [k for k in columns if units.get(k) == "Hz"]
     columns = best[:1] if len(columns) > 1 and len(best) == 1 else columns

@@ -88,23 +88,24 @@ def result_of(
         summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    if claimed and {one.candidate.wall for one in others} <= {best.candidate.wall} and (change := _change(best, beam)):
+    if claimed and {fit.candidate.wall for fit in others} <= {best.candidate.wall} and (change := _change(best, beam)):
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
     groups = {"equivalent": fits.equivalent, "alternatives": fits.alternatives, "candidates": fits.ranking}
-    about |= {name: [_plain(one, beam) for one in group] for name, group in groups.items()}
+    about |= {name: [_plain(fit, beam) for fit in group] for name, group in groups.items()}
     failure = f"the list is {per_cent(off)} too {'low' if worst.error < 0.0 else 'high'} at mode {worst.mode}"
-    own = Margin(name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within,
-                 failure=failure)  # fmt: skip
+    error = Margin(
+        name="error of the list", size=off, where=f"at mode {worst.mode}", fine=within, limit=within, failure=failure
+    )
     settings = not_default({"theory": options.theory})
-    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent), settings=settings), own]
+    margins = [*beam_margins(SolutionCache(beam), [], mode=max(row.mode for row in bent), settings=settings), error]
     margins += [void(f"the list ({text})", text.rstrip(".")) for text in faults]
     checks: list[Any] = [("faults of the list", float(len(faults)), 0.0, "no" if faults else "yes")]
     checks.append(("largest error against the exact beam", off, within, "yes" if off <= within else "no"))
     columns = [Column("criterion"), Column("value", format=".3g"), Column("at most", format=".3g"), Column("passed")]
     tables = [*_tables(fits, beam, rows, required), Table("Acceptance", columns, checks)]
-    kinds = {one.fault.kind for one in (best, *others)}
+    kinds = {fit.fault.kind for fit in (best, *others)}
     if "clamp" in kinds and beam.uniform and set(beam.supports) == {"clamped", "free"}:
         warnings = [*warnings, TIP_MASS]
     figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
@@ -121,15 +122,15 @@ def _change(best: Fit, beam: Beam) -> str:
     except InputError:  # for example with tension, or without a discretisation
         return ""
     if wall in ("full", "rigid", "stiff") and "clamped" in beam.supports:
-        two, *three = (one.hinges[0].stiffness for one in (half.joints[0], *gregory.joints[:3]))
+        two, *three = (joint.hinges[0].stiffness for joint in (half.joints[0], *gregory.joints[:3]))
         now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
         each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
-        better = ", ".join(f"{one:.6g}" for one in three)
+        better = ", ".join(f"{stiffness:.6g}" for stiffness in three)
         texts = [f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"]
     if best.candidate.joints in ("printed", "outboard", "inboard", "mean"):
         steps = np.cumsum([piece.length for piece in half.beam.pieces[:-1]])
-        at = [one for one in half.joints if np.isclose(one.position, steps).any()]
-        each = ", ".join(f"{one.hinges[0].stiffness:.6g} N m/rad at {one.position:.6g} m" for one in at)
+        at = [joint for joint in half.joints if np.isclose(joint.position, steps).any()]
+        each = ", ".join(f"{joint.hinges[0].stiffness:.6g} N m/rad at {joint.position:.6g} m" for joint in at)
         texts += [f"joints at steps to those of two half links in series, {each}"]
     return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
@@ -137,7 +138,7 @@ def _change(best: Fit, beam: Beam) -> str:
 def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
     """Errors of the list, the best and the next candidate."""
     best = fits.best
-    following = next((one for one in fits.ranking[1:] if one not in fits.equivalent), None)
+    following = next((fit for fit in fits.ranking[1:] if fit not in fits.equivalent), None)
     rows = [row for row in rows if row.motion == BENDING]
     n = max(row.mode for row in rows)
 
@@ -160,30 +161,34 @@ def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[
     """Modes, other motions, candidates, faults, parameters, required N."""
     best, sizes = fits.best, [Column("candidate"), Column("N")]
     tables = [_modes(best, [row for row in rows if row.motion == BENDING])]
-    lines: list[Any] = [(one.entry, one.motion, one.mode, one.listed_hz, one.exact_hz, one.error) for one in rows]
+    lines: list[Any] = [(row.entry, row.motion, row.mode, row.listed_hz, row.exact_hz, row.error) for row in rows]
     if lines := [line for line in lines if line[1] != BENDING]:
         columns = [ENTRY[0], Column("motion"), *ENTRY[1:], Column("error", format=".4g", percent=True)]
         tables.append(Table("Other motions", columns, lines))
-    words = {id(one): "equivalent" for one in fits.equivalent} | {id(one): "alternative" for one in fits.alternatives}
+    words = {id(fit): "equivalent" for fit in fits.equivalent} | {id(fit): "alternative" for fit in fits.alternatives}
     words[id(best)] = "nearest" if fits.status in ("few", "unknown") else "best"
-    lines = [(one.candidate.label, one.count, one.candidate.order(beam), one.rms, one.largest, words.get(id(one), ""))
-             for one in fits.ranking[:SHOWN]]  # fmt: skip
+    lines = [
+        (fit.candidate.label, fit.count, fit.candidate.order(beam), fit.rms, fit.largest, words.get(id(fit), ""))
+        for fit in fits.ranking[:SHOWN]
+    ]
     notes = ["rms: log frequency differences. Equivalent: equal frequencies. Alternative: agrees as well."]
     tables.append(Table("Candidates", [*sizes, Column("order"), *RMS, Column("status")], lines, notes))
-    if fits.status == "unknown" or any(one.fault.kind != "none" for one in (best, *fits.alternatives)):
-        lines = [(FAULTS[one.fault.kind][0], value(one, beam), one.candidate.label, one.count, one.rms, one.largest)
-                 for one in fits.tested]  # fmt: skip
+    if fits.status == "unknown" or any(fit.fault.kind != "none" for fit in (best, *fits.alternatives)):
+        lines = [
+            (FAULTS[fit.fault.kind][0], value(fit, beam), fit.candidate.label, fit.count, fit.rms, fit.largest)
+            for fit in fits.tested
+        ]
         columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
     if best.fault.kind == "factor":
         held = bool(beam.spring or beam.foundation or beam.tension)
-        bare = best.candidate.theory == EULER and not (held or beam.mass)
-        alone = {"E": not held, "rho": not beam.mass}
-        lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if alone.get(name, bare)]
+        euler = best.candidate.theory == EULER and not (held or beam.mass)
+        possible = {"E": not held, "rho": not beam.mass}
+        lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if possible.get(name, euler)]
         columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
         tables.append(Table("Parameters that alone explain the factor", columns, lines))
     columns = [Column("model"), Column("mode"), Column("N for 1 %"), Column("N for 0.1 %")]
-    lines = [(one.label, *counts) for one, *counts in required]
+    lines = [(candidate.label, *counts) for candidate, *counts in required]
     return [*tables, Table("Required N", columns, lines, [UNEVEN] * is_uneven(beam))]
 
 
@@ -225,13 +230,13 @@ def value(fit: Fit, beam: Beam) -> str:
         factors["plane strain, 1/sqrt(1 - nu^2)"] = (1.0 - beam.poissons_ratio**2) ** -0.5
         if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
             factors["width and thickness exchanged"] = beam.width / beam.thickness
-        names = [name for name, one in factors.items() if abs(fit.parameter / one - 1.0) < near]
+        names = [name for name, factor in factors.items() if abs(fit.parameter / factor - 1.0) < near]
         words += [f"({' or '.join(names)})"] * bool(names)
     return " ".join(word for word in words if word)
 
 
 def _plain(fit: Fit, beam: Beam) -> dict[str, Any]:
-    one = fit.candidate
-    plain = msgspec.structs.asdict(one) | {"label": one.label, "order": one.order(beam), "count": fit.count}
+    candidate = fit.candidate
+    plain = msgspec.structs.asdict(candidate) | {"label": candidate.label, "order": candidate.order(beam)}
     fault = {"kind": fit.fault.kind, "label": fit.fault.label, "parameter": fit.parameter}
-    return plain | {"rms": fit.rms, "largest": fit.largest, "fault": fault}
+    return plain | {"count": fit.count, "rms": fit.rms, "largest": fit.largest, "fault": fault}

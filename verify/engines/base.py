@@ -136,7 +136,7 @@ class Engine:
 ENGINES: Registry[Engine] = Registry(
     "engine",
     "verify.engines",
-    own=(
+    members=(
         Engine("Exudyn", "exudyn", "exudyn", "verify.engines.exudyn:Exudyn", implicit=True),
         Engine("MuJoCo", "mujoco", "mujoco", "verify.engines.mujoco:Mujoco"),
         Engine("Pinocchio", "pin", "pinocchio", "verify.engines.pinocchio:Pinocchio"),

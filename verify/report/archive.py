@@ -1,4 +1,4 @@
-"""Saved runs: a folder for each with its page and its data, and a copy of the latest page above them.
+"""Saved runs, a folder for each with its page and its data and a copy of the latest page above them, and their changes.
 
 reports/paper.html                            the latest page, a copy: one file can be sent or served
 reports/paper/2026-03-01_14-05-09-271828/index.html  the page of a saved run
@@ -8,19 +8,24 @@ reports/paper/2026-03-01_14-05-09-271828/run.json    its data (`report.summary.r
 import json
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from verify.errors import InputError
 from verify.files import exists, write_folder, write_whole
-from verify.report.summary import run_data
+from verify.report.page import run_page
+from verify.report.result import Column, Result, Table, to_json
+from verify.report.summary import VERDICTS, run_data
 
 if TYPE_CHECKING:
     from verify.scene.run import RunResult
 
 DATA, PAGE = "run.json", "index.html"
+ARROW = "→"
+Run = Mapping[str, Any]
+"""Data of a run (`report.summary.run_data`)."""
 KEEP = 5
 """Saved runs of one name."""
 _TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
@@ -47,9 +52,6 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
     Every file is whole or absent. With keep = 0 the latest page is the only file. Raises InputError where it cannot
     be written, or where a file has the name of the folder.
     """
-    from verify.report.page import run_page
-    from verify.report.result import to_json
-
     page, home, folder = run_page(run, command), reports / name, None
     if keep:
         if exists(home, "reports") and not home.is_dir():
@@ -65,8 +67,8 @@ def save_run(run: "RunResult", reports: Path, name: str, command: str = "", keep
 
 def saved_in(home: Path) -> list[Path]:
     """Folders with a saved run, from the oldest to the newest."""
-    found = [one.parent for one in home.glob(f"*/{DATA}") if _TIME.fullmatch(one.parent.name)]
-    return sorted(one for one in found if not one.is_symlink())
+    folders = [folder.parent for folder in home.glob(f"*/{DATA}") if _TIME.fullmatch(folder.parent.name)]
+    return sorted(folder for folder in folders if not folder.is_symlink())
 
 
 def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
@@ -81,7 +83,7 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
     elif (path / DATA).is_file():
         files = [path / DATA]
     else:
-        homes = [path] if saved_in(path) else sorted(one for one in path.iterdir() if one.is_dir())
+        homes = [path] if saved_in(path) else sorted(home for home in path.iterdir() if home.is_dir())
         files = [saved_in(home)[-1] / DATA for home in homes if saved_in(home)]
     runs = [_read(file, field) for file in files]
     if not runs:
@@ -96,3 +98,81 @@ def _read(path: Path, field: str) -> dict[str, Any]:
     except (OSError, ValueError, TypeError, KeyError):
         raise InputError(f"{field} = {str(path)!r} is no saved run: give the {DATA} that `verify run` writes") from None
     return dict(run)
+
+
+def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
+    """Differences of runs by report name; two single runs are compared whatever their names are.
+
+    `data["broken"]` lists gates that passed before and fail, or are missing, now. Raises InputError where no name is
+    in both.
+    """
+    names = [name for name in before if name in after]
+    pairs = [(name, before[name], after[name]) for name in names]
+    if len(before) == len(after) == 1:
+        (name, old), (_, new) = *before.items(), *after.items()
+        pairs = [(name, old, new)]
+    elif not pairs:
+        raise InputError(
+            f"A has {', '.join(before)} and B has {', '.join(after)}, no name in both: give runs of the same scene"
+        )
+    gates = [(name, *row) for name, old, new in pairs for row in _gates(old["gates"], new["gates"])]
+    inputs = [(name, *row) for name, old, new in pairs for row in _changed(old["inputs"], new["inputs"])]
+    versions = [(name, *row) for name, old, new in pairs for row in _changed(_versions(old), _versions(new))]
+    both = [(name, old["verdict"], new["verdict"]) for name, old, new in pairs]
+    levels = [(name, _turn(a["level"], b["level"]), b["headline"]) for name, a, b in both if a["level"] != b["level"]]
+    broken = [f"{row[0]}: {row[1]}" for row in gates if row[2].startswith(f"{VERDICTS[True]} {ARROW}")]
+    keys = ("report", "key", "before", "after")
+    columns = [Column(name) for name in ("report", "gate", "verdict", "expected")]
+    columns += [Column("before", format=".10g"), Column("after", format=".10g")]
+    tables = [
+        Table("Verdicts that changed", [Column(key) for key in ("report", "level", "headline now")], levels),
+        Table("Gates that changed", [*columns, Column("change", percent=True, format="+.3g")], gates),
+        Table("Inputs that changed", [Column(key) for key in keys], inputs),
+        Table("Environment", [Column(key) for key in keys], versions),
+    ]
+    missing = [name for name in (*before, *after) if len(before) + len(after) > 2 and name not in names]
+    return Result(
+        summary=f"Changed: {len(levels)} verdicts, {len(gates)} gates ({len(broken)} broken), {len(inputs)} inputs.",
+        tables=[table for table in tables if table.rows],
+        warnings=[f"{name} is in one of the two only" for name in missing],
+        data={"broken": broken},
+    )
+
+
+def _gates(before: list[Any], after: list[Any]) -> Iterator[tuple[Any, ...]]:
+    old, new = ({gate["id"]: gate for gate in gates} for gates in (before, after))
+    nothing = {"passed": "missing", "value": None, "expected": None}
+    for name in dict.fromkeys((*old, *new)):
+        gate_before, gate_after = old.get(name, nothing), new.get(name, nothing)
+        if any(gate_before[key] != gate_after[key] for key in ("passed", "value", "expected")):
+            a, b = gate_before["value"], gate_after["value"]
+            real = isinstance(a, float | int) and isinstance(b, float | int) and a
+            values = [_text(value) for value in (a, b)] if not real else [a, b]
+            verdicts = [VERDICTS.get(gate["passed"], "missing") for gate in (gate_before, gate_after)]
+            criteria = _turn(gate_before["expected"] or "", gate_after["expected"] or "")
+            yield name, _turn(*verdicts), criteria, *values, (b - a) / abs(a) if real else None
+
+
+def _turn(before: str, after: str) -> str:
+    return before if before == after else f"{before} {ARROW} {after}"
+
+
+def _text(value: Any) -> Any:
+    return value if value is None or isinstance(value, float | int) else ", ".join(f"{k} {v}" for k, v in value.items())
+
+
+def _versions(run: Run) -> dict[str, Any]:
+    return {key: value for key, value in run["environment"].items() if key != "date"}
+
+
+def _changed(before: Any, after: Any, path: str = "") -> Iterator[tuple[str, str | None, str | None]]:
+    """(path, before, after) of values that differ in nested data."""
+    if before == after:
+        return
+    if isinstance(before, list) and isinstance(after, list):
+        before, after = dict(enumerate(before)), dict(enumerate(after))
+    if isinstance(before, dict) and isinstance(after, dict):
+        for key in dict.fromkeys((*before, *after)):
+            yield from _changed(before.get(key), after.get(key), f"{path}.{key}".lstrip("."))
+    else:
+        yield path, None if before is None else str(before), None if after is None else str(after)

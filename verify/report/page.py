@@ -1,19 +1,23 @@
-"""HTML pages: one file each, with charts inside, that needs no network and no script."""
+"""HTML pages of a run and of several: one file each, with charts inside, that needs no network and no script."""
 
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite
+from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verify.analysis import verdict
+from verify.files import write_whole
 from verify.formatting import with_unit
+from verify.report.beam_drawing import beam_figure
 from verify.report.plotting import figure_files, movie_image
-from verify.report.result import Column, Figure, Movie, Table, plain, to_json
+from verify.report.result import Column, Figure, Movie, Result, Table, plain, to_json
 from verify.report.summary import environment, gates_sentence, gates_table, study_title
 
 if TYPE_CHECKING:
+    from verify.report.archive import Saved
     from verify.scene.run import RunResult
 
 LONG = 30
@@ -22,7 +26,8 @@ DENSE = 6
 """Columns beyond which a table has small print."""
 LEVELS = verdict.LEVELS[::-1]
 """Levels of a verdict, the worst first."""
-MARKS = dict.fromkeys((LEVELS[0], "FAIL", "cannot run"), "fail") | dict.fromkeys((LEVELS[2], "pass"), "pass")
+CANNOT = "cannot run"
+MARKS = dict.fromkeys((LEVELS[0], "FAIL", CANNOT), "fail") | dict.fromkeys((LEVELS[2], "pass"), "pass")
 MARKS[LEVELS[1]] = "warn"
 """Class of a cell with this text."""
 SPEEDS = "Speed of the slider"
@@ -56,10 +61,8 @@ class Section:
 
 def run_page(run: "RunResult", command: str = "") -> str:
     """The report of a run as HTML: verdict, results, margins and caveats, then figures, no sentence twice."""
-    from verify.report.beam_drawing import beam_figure
-
     scene, headline = run.scene, run.verdict.headline
-    problems = [(one.gate.id, one.reason) for one in run.failed]
+    problems = [(gate.id, gate.reason) for gate in run.failed]
     caveats = dict.fromkeys(run.warnings, ("", ""))
     for name, result in run.results.items():
         for text in result.warnings:
@@ -67,25 +70,25 @@ def run_page(run: "RunResult", command: str = "") -> str:
     above = {headline, *(why for _, why in problems)}
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
-    limits = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
-    columns = [Column("level"), Column("margin"), *limits, Column("condition"), Column("remedy")]
+    sizes = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
+    columns = [Column("level"), Column("margin"), *sizes, Column("condition"), Column("remedy")]
     rows: list[Any] = []
-    for one in (margin for margin in run.verdict.margins if margin.name != "gates"):  # they have a table
-        texts = [one.condition if one.level == "conditional" else one.failure, one.remedy]
-        texts = ["" if one.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
-        relative = one.is_error and isfinite(one.size)
-        rows.append((one.level, one.text, *map(plain, (one.fine, one.limit) if relative else (None, None)), *texts))
+    for margin in (margin for margin in run.verdict.margins if margin.name != "gates"):  # they have a table
+        limits = (margin.fine, margin.limit) if margin.is_error and isfinite(margin.size) else (None, None)
+        texts = [margin.condition if margin.level == "conditional" else margin.failure, margin.remedy]
+        texts = ["" if margin.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
+        rows.append((margin.level, margin.text, *map(plain, limits), *texts))
     reasons = [Table("Margins", columns, rows[:WORST]), Table(REST, columns, rows[WORST:])]
     gates = gates_table(run)
-    skipped = Table("Not run", [Column("what"), Column("why")], [(one.what, one.why) for one in run.skipped])
-    whys = {one.reason: one.gate.why for one in run.failed}  # their reasons stand above
-    rest = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
+    skipped = Table("Not run", [Column("what"), Column("why")], [(part.what, part.why) for part in run.skipped])
+    whys = {gate.reason: gate.gate.why for gate in run.failed}  # their reasons stand above
+    gate_rows = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
         Section("margins", "Margins", tables=[table for table in reasons if table.rows]),
         Section("caveats", "Caveats", caveats=listed),
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
-        Section("gates", "Gates", gates_sentence(run), tables=[replace(gates, rows=rest)] * bool(run.gates)),
+        Section("gates", "Gates", gates_sentence(run), tables=[replace(gates, rows=gate_rows)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=to_json(scene), folded=True),
     ]
@@ -99,7 +102,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         problems=[f"{what}: {why}" for what, why in problems if why not in headline],
         others=run.verdict.others,
         drawing=beam_figure(scene),
-        sections=[one for one in sections if one.id in run.results or one.tables or one.caveats or one.code],
+        sections=[part for part in sections if part.id in run.results or part.tables or part.caveats or part.code],
         command=command,
     )
 
@@ -115,15 +118,75 @@ def _study_section(run: "RunResult", name: str) -> Section:
     return Section(name, study_title(run, name), finding, (), figures, condition, movies, tables)
 
 
+def scene_line(run: "RunResult", name: str, saved: "Saved | None") -> dict[str, Any]:
+    """The index's line of one run, as plain data."""
+    return {
+        "scene": name,
+        "title": run.scene.title or run.scene.name,
+        "passed": run.passed,
+        "gates": [sum(gate.passed is True for gate in run.gates), len(run.gates)],
+        "level": run.verdict.level,
+        "verdict": run.verdict.headline,
+        "failed": [{"gate": gate.id, "reason": gate.reason} for gate in run.failed],
+        "seconds": run.seconds,
+        "page": str(saved.page) if saved else None,
+        "folder": str(saved.folder) if saved and saved.folder else None,
+    }
+
+
+def failed_line(name: str, sentences: Sequence[str]) -> dict[str, Any]:
+    """Index line of a scene that cannot run."""
+    return {"scene": name, "title": name, "passed": None, "gates": [0, 0], "failed": [], "errors": list(sentences)}
+
+
+def index_result(lines: Sequence[dict[str, Any]]) -> Result:
+    """All scenes as a result, a row for each: the worst first."""
+    ordered = sorted(lines, key=lambda line: [None, *LEVELS].index(line.get("level")))
+    rows = [(x.get("level", CANNOT), x["scene"], x.get("verdict"), *x["gates"], x.get("seconds")) for x in ordered]
+    columns = [*map(Column, ("level", "scene", "headline", "passed", "gates")), Column("time", "s", ".3g")]
+    reasons = [(line["scene"], gate["gate"], gate["reason"]) for line in ordered for gate in line["failed"]]
+    reasons += [(line["scene"], "", text) for line in ordered for text in line.get("errors", ())]
+    failed = Table("Failed", [Column("scene"), Column("gate"), Column("reason")], reasons)
+    levels = [line.get("level", CANNOT) for line in lines]
+    counts = [f"{levels.count(level)} {level}" for level in (CANNOT, *LEVELS) if level in levels]
+    bad, n = sum(line["passed"] is not True for line in lines), len(lines)
+    passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
+    good = f"{n} scenes, " + (f"all {passed} gates passed" if passed else "no gate ran")
+    good += f", --set skips {gates - passed}" * (gates > passed)
+    return Result(
+        summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",
+        tables=[Table("Scenes", columns, rows), *([failed] if reasons else [])],
+        data={"scenes": list(lines), "passed": all(line["passed"] for line in lines)},
+    )
+
+
+def write_index(lines: Sequence[dict[str, Any]], path: Path, command: str, seconds: float) -> None:
+    """Write the page over all scenes, with the banner of the gates. Raises InputError where it cannot be written."""
+    links = {line["scene"]: Path(relpath(line["page"], path.parent)).as_posix() for line in lines if line.get("page")}
+    result = index_result(lines)
+    worst = min((line.get("level", LEVELS[0]) for line in lines), key=LEVELS.index)
+    sections = [Section(table.title.lower(), table.title, tables=[table], links=links) for table in result.tables]
+    page = render(
+        "scenes",
+        sections,
+        title="All scenes",
+        level="gates passed" if all(line["passed"] and line["gates"][0] for line in lines) else worst,
+        verdict=result.summary,
+        seconds=seconds,
+        command=command,
+    )
+    write_whole(path, page, "reports")
+
+
 def render(name: str, sections: Sequence[Section], **values: Any) -> str:
     """A page of sections below a verdict; `values` are the template's other variables."""
     from jinja2 import Environment, FileSystemLoader
 
     loader = FileSystemLoader(Path(__file__).parent)
-    made = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(show_figure=_figure, show_movie=_movie, cells=_table, environment=environment())
+    templates = Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    templates.globals.update(show_figure=_figure, show_movie=_movie, cells=_table, environment=environment())
     css = Path(__file__).with_name("page.css").read_text("utf-8")
-    return made.get_template("page.html.j2").render(name=name, sections=sections, css=css, **values)
+    return templates.get_template("page.html.j2").render(name=name, sections=sections, css=css, **values)
 
 
 def data_uri(kind: str, content: str | bytes) -> str:

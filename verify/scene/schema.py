@@ -22,23 +22,23 @@ TOP = "scene"  # name of the keys outside of any section
 
 def sections() -> dict[str, type[msgspec.Struct]]:
     """Every table of a scene by its dotted name: 'scene', 'beam', 'beam.section', ..., and those of studies."""
-    found: dict[str, type[msgspec.Struct]] = {TOP: Scene}
+    kinds: dict[str, type[msgspec.Struct]] = {TOP: Scene}
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
         for field in msgspec.structs.fields(kind):
             tables = structs_of(entry_of(field.type) or field.type)
             for tag, table in tables.items():
-                if table in found.values():  # a material of several actuators
+                if table in kinds.values():  # a material of several actuators
                     continue
                 name = f"{where}{field.encode_name}" + (f".{tag}" if len(tables) > 1 else "")
-                found[name] = table
+                kinds[name] = table
                 add(table, f"{name}.")
 
     add(Scene, "")
     for name in STUDIES:
-        found[name] = STUDIES[name]
+        kinds[name] = STUDIES[name]
         add(STUDIES[name], f"{name}.")
-    return found
+    return kinds
 
 
 def scene_schema(section: str = TOP) -> dict[str, Any]:
@@ -54,39 +54,39 @@ def scene_schema(section: str = TOP) -> dict[str, Any]:
         table["description"] = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ")
         tag = {"kind": "Kind of the table."} if kind.__struct_config__.tag else {}
         for key, meaning in (descriptions(kind) | tag).items():
-            own = table["properties"][key]
-            table["properties"][key] = {**({"allOf": [own]} if "$ref" in own else own), "description": meaning}
+            field = table["properties"][key]
+            table["properties"][key] = {**({"allOf": [field]} if "$ref" in field else field), "description": meaning}
     for name in ("Gate", "Claim"):
         tables[name]["properties"]["quantity"]["enum"] = sorted(QUANTITIES)
     top = tables["Scene"]["properties"]
     top.pop("studies", None)
     top |= {name: {"$ref": names[name]} for name in STUDIES}
-    own = tables[names[section].rpartition("/")[2]]
-    return {"$schema": DRAFT, **own, "$defs": tables}
+    chosen = tables[names[section].rpartition("/")[2]]
+    return {"$schema": DRAFT, **chosen, "$defs": tables}
 
 
 @cache
 def descriptions(kind: type[msgspec.Struct]) -> dict[str, str]:
     """What each key means: the docstring under its field in the source, or the description in its annotation."""
-    found: dict[str, str] = {}
-    for one in reversed(kind.__mro__[:-1]):
+    meanings: dict[str, str] = {}
+    for base in reversed(kind.__mro__[:-1]):
         try:
-            body = ast.parse(dedent(inspect.getsource(one))).body[0]
+            body = ast.parse(dedent(inspect.getsource(base))).body[0]
         except (OSError, TypeError, SyntaxError):
             continue
         for node, after in pairwise(getattr(body, "body", ())):
             if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and isinstance(after, ast.Expr):
-                found[node.target.id] = " ".join(str(ast.literal_eval(after.value)).split())
+                meanings[node.target.id] = " ".join(str(ast.literal_eval(after.value)).split())
     fields = {field.name: field for field in msgspec.structs.fields(kind)}
     for name, field in fields.items():
-        found.setdefault(name, description_of(field.type))
-    return {fields[name].encode_name: found[name] for name in fields if found[name]}
+        meanings.setdefault(name, description_of(field.type))
+    return {fields[name].encode_name: meanings[name] for name in fields if meanings[name]}
 
 
 def _tidy(schema: Any) -> Any:
     """Without null, which TOML lacks, and with draft 7's form of fixed-length lists."""
     if isinstance(schema, list):
-        return [_tidy(one) for one in schema]
+        return [_tidy(part) for part in schema]
     if not isinstance(schema, dict):
         return schema
     plain = {key: _tidy(value) for key, value in schema.items() if not (key == "default" and value is None)}
