@@ -33,7 +33,7 @@ def revise_limits(dt: float, kind: Kind, bodies: Bodies) -> bool:
     for i in range(bodies.points.shape[0]):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         static = slider.mu_static * contact.normal
-        if slider.mu_static <= slider.mu or not laws.rigid(point.law) or static <= 0.0 or contact.holds > 0.0:
+        if slider.mu_static <= slider.mu or not laws.set_valued(point.law) or static <= 0.0 or contact.holds > 0.0:
             continue
         if contact.grip == SLIDES:
             start = slip_at_start(kind, slider, contact)
@@ -61,7 +61,7 @@ def residual(
     normal, force = max(contact.normal, 0.0), contact.friction
     if slider.mu * normal <= 0.0:
         return 1.0, 0.0, force, 0.0
-    if laws.rigid(point.law):
+    if laws.set_valued(point.law):
         stuck, own = contact.sticks_before > 0.0 or contact.grip == HOLDS, own_compliance(dt, slider, contact)
         excess = slip - (sticking_slip(kind, slider, contact) if stuck else 0.0) + CREEP * own * force
         return CREEP * own, 1.0, excess, force - excess / own
@@ -92,7 +92,7 @@ def set_rows(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
     for i in range(n):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         diagonal, slope, miss = 1.0, 0.0, 0.0
-        if contact.at_limit == 0.0:
+        if contact.limit_sign == 0.0:
             slip = mean_slip(i, bodies, response)
             diagonal, slope, miss, _ = residual(dt, slip, kind, slider, point, contact)
         for k in range(n):
@@ -107,8 +107,8 @@ def set_rows(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
 def eliminate(block: Array) -> None:
     """Solve in place; the solution is the last column.
 
-    Without pivoting: the rows are those of a symmetric positive definite matrix (compliances and a positive diagonal),
-    each times a scale, and such a matrix needs none.
+    Without pivoting: the rows between limits are those of a symmetric positive definite matrix (compliances and a
+    positive diagonal), each times a scale, and such a matrix needs none; rows at a limit are those of the identity.
     """
     n = block.shape[0]
     for k in range(n):
@@ -127,14 +127,14 @@ def step_to_limit(dt: float, kind: Kind, bodies: Bodies, response: Response) -> 
     n, share, first, side, largest = bodies.points.shape[0], 1.0, -1, 0.0, 0.0
     for i in range(n):
         contact, more, limit = bodies.contacts[i], response.block[i, n], limit_of(i, bodies)
-        if contact.at_limit == 0.0 and abs(contact.friction + share * more) > limit:
+        if contact.limit_sign == 0.0 and abs(contact.friction + share * more) > limit:
             first, side = i, math.copysign(1.0, more)
             share = max((side * limit - contact.friction) / more, 0.0)
     for i in range(n):
         more = share * response.block[i, n]
         if i == first:
             more = side * limit_of(i, bodies) - bodies.contacts[i].friction
-            bodies.contacts[i].at_limit = side
+            bodies.contacts[i].limit_sign = side
         add_friction(i, more, dt, kind, bodies, response)
         largest = max(largest, abs(more))
     return math.inf if first >= 0 else largest
@@ -147,13 +147,13 @@ def release_worst(dt: float, kind: Kind, bodies: Bodies, response: Response) -> 
     for i in range(bodies.points.shape[0]):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         contact.slip = mean_slip(i, bodies, response)
-        if contact.at_limit != 0.0:
+        if contact.limit_sign != 0.0:
             _, _, _, wanted = residual(dt, contact.slip, kind, slider, point, contact)
-            share = contact.at_limit * wanted / limit_of(i, bodies)
+            share = contact.limit_sign * wanted / limit_of(i, bodies)
             if share < least:
                 least, leaves = share, i
     if leaves >= 0:
-        bodies.contacts[leaves].at_limit = 0.0
+        bodies.contacts[leaves].limit_sign = 0.0
     return leaves >= 0
 
 
@@ -172,7 +172,7 @@ def solve_active_sets(dt: float, largest: float, kind: Kind, bodies: Bodies, res
         if bodies.contacts[i].normal <= 0.0:
             inside = 0.0
         add_friction(i, inside - contact.friction, dt, kind, bodies, response)
-        contact.at_limit = math.copysign(1.0, inside) if abs(inside) == limit else 0.0
+        contact.limit_sign = math.copysign(1.0, inside) if abs(inside) == limit else 0.0
     for _ in range(ROUNDS * n + 20):
         set_rows(dt, kind, bodies, response)
         eliminate(response.block)
@@ -184,6 +184,6 @@ def solve_active_sets(dt: float, largest: float, kind: Kind, bodies: Bodies, res
     for i in range(n):
         point, contact = bodies.points[i], bodies.contacts[i]
         bounded = laws.limits(bodies.sliders[point.slider], point, contact) < math.inf
-        contact.holds = 1.0 if bounded and contact.at_limit == 0.0 else 0.0
+        contact.holds, contact.moved = 1.0 if bounded and contact.limit_sign == 0.0 else 0.0, contact.slip
         contact.events = 0
     return changed

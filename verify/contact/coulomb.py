@@ -84,7 +84,7 @@ def from_event_to_event(slip: Slip, kinetic: float, static: float, sticks: bool,
         slides, before, start = not sticks, r, a0 + change * used
         time, r, sticks, event = span(r, start, a0 + change, own * kinetic, own * static, 1.0 - used, sticks)
         if slides:  # r is a parabola
-            side = sign(before) if before != 0.0 else sign(r)
+            side = sign(before) if before != 0.0 else -sign(start if start != 0.0 else change)
             force -= side * kinetic * time
             contact.moved += 0.5 * time * (before + r) + change * time * time * time / 12.0
         elif own > 0.0:
@@ -113,7 +113,9 @@ def held_alone(needed: float, kinetic: float, static: float, last: float, compli
     contact.holds, contact.moved, contact.events = 1.0, 0.0, 0
     if size <= static:
         return needed
-    stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
+    stays = 0.0  # of a limit that has fallen below the last force already
+    if sign * last < static:
+        stays = max((static - sign * last) / (size - sign * last) - 0.5, 0.0)
     mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
     end = -sign * (size - mean) * compliance  # r at the end, grown on a line since it slips
     contact.holds, contact.moved, contact.events = 0.0, 0.5 * (1.0 - stays) * end, 1
@@ -164,7 +166,7 @@ def slope(path: Path, normal: float, slider: Record, point: Record, contact: Rec
     if end >= 0.0:
         return -side * kinetic, -side * kinetic, 0.0
     change, own = r - end, path.mobility * kinetic
-    # it reverses: a = change + mobility force satisfies (own + a) (end + a - own) = r (a - own), piecewise linear
+    # it reverses, r on two lines: a = change + mobility force satisfies (own + a) (end + a - own) = r (a - own)
     root = math.sqrt(change * change - 4.0 * own * (r + end - own))
     force = -2.0 * kinetic * (r + end - own) / (change + root)
     return side * force, side * force, (force - kinetic) / root

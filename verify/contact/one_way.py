@@ -1,8 +1,10 @@
 """Friction of a slider with several points on a surface that does not respond to them.
 
-The points are coupled by the slider's gain of speed g alone, g = pulled + dt/m sum F_i(g), and friction falls with it:
-one root, by Newton's method between bounds. It may lie at a gain that stops a point, where what the other points leave
-is shared by the points at rest in proportion to the range of their forces.
+The points are coupled by the slider's gain of speed g alone, g = pulled + dt/m sum F_i(g), found by Newton's method
+between bounds. Friction falls with g, so that the root is the only one, but where a point may stop whose static limit
+is above its kinetic one: then the first guess, at which points that stick stay at rest, decides. The root may lie at a
+gain that stops a point, where what the other points leave is shared by the points at rest in proportion to the range of
+their forces.
 """
 
 from verify.contact import laws
@@ -36,23 +38,23 @@ def forces_at(
 ) -> tuple[float, float, float]:
     """(Least, largest friction of points first..last, derivative by the gain of speed); sets those of every point.
 
-    `rest_gain` is the gain at which a rigid point stops within the step, else the present one.
+    `stopping_gain` is the gain at which a rigid point stops within the step, else the present one.
     """
     least, most, slope, slider = 0.0, 0.0, 0.0, bodies.sliders[bodies.points[last].slider]
     for i in range(first, last + 1):
         point, contact = bodies.points[i], bodies.contacts[i]
         path = path_of(dt, gained, late, slider, contact, laws.limits(slider, point, contact))
         low, high, rate = laws.slope(path, contact.normal, slider, point, contact)
-        contact.least, contact.most, contact.rest_gain = low, high, gained
+        contact.least, contact.most, contact.stopping_gain = low, high, gained
         least, most, slope = least + low, most + high, slope + rate
-        if not laws.rigid(point.law):
+        if not laws.set_valued(point.law):
             continue
         stops = abs(path.start) < path.mobility * (slider.mu_static + slider.mu) * contact.normal
         if low < high:
             contact.holds = 1.0 if contact.sticks_before > 0.0 or abs(path.start) <= path.rounding else 0.5
         else:
             contact.holds = 0.0
-            contact.rest_gain = contact.surface_delta_v - path.start if stops else gained
+            contact.stopping_gain = contact.surface_delta_v - path.start if stops else gained
     return least, most, slope
 
 
@@ -87,14 +89,14 @@ def gain_of_speed(first: int, last: int, dt: float, late: float, bodies: Bodies)
         if not low < after < high:
             after = 0.5 * (low + high)
         for i in range(first, last + 1):  # to the first stop on the way
-            if min(gained, after) < bodies.contacts[i].rest_gain < max(gained, after):
-                after = bodies.contacts[i].rest_gain
+            if min(gained, after) < bodies.contacts[i].stopping_gain < max(gained, after):
+                after = bodies.contacts[i].stopping_gain
         if abs(miss) <= SETTLED * limit or (after - gained) * (after - low) * (after - high) == 0.0:
             break
         gained = after
     if mobility > 0.0 and most > least:
         return gained, min(max(((gained - pulled) / mobility - least) / (most - least), 0.0), 1.0)
-    return gained, 0.5
+    return gained, 0.5  # at a prescribed speed: friction at rest is open, its middle is taken
 
 
 @jit(no_cpython_wrapper=True)
@@ -112,7 +114,7 @@ def solve_one_way_friction(last: int, dt: float, kind: Kind, bodies: Bodies) -> 
     mobility, pulled, total, late, gained = dt * slider.inverse_mass, slider.delta_v, 0.0, 0.0, 0.0
     if first == last:
         point, contact = bodies.points[last], bodies.contacts[last]
-        slip = slip_of(dt, total, kind, slider, contact)
+        slip = slip_of(dt, total, kind, slider, contact)  # 0.0; a constant would compile it anew
         contact.friction = laws.force(slip, contact.normal, slider, point, contact)
         gained = pulled + mobility * contact.friction
     else:

@@ -64,7 +64,7 @@ CONTACT = record(
     "normal friction sticks depth stretch point_vz surface surface_before loss",  # state
     "xi xi_point xi_end xi_point_end slope v_end vz slope_vz closing start mean end surface_delta_v",
     "depth_before sticks_before friction_before tilt_end drift_end",
-    "slip self_response grip holds moved at_limit rest_gain least most power",
+    "slip self_response grip holds moved limit_sign stopping_gain least most power",
     integers="piece events",
     rows="event_share event_kind",
 )

@@ -61,7 +61,7 @@ class Under(NamedTuple):
     slope_vz: float
     """Its part by slopes."""
     acceleration: float
-    """Acceleration across of a point that rides on it, m/s^2."""
+    """Acceleration across of a point that rides on it, m/s^2, without w' dv/dt: mu w' of the load."""
     along: float
     """Tangential speed of the material, m/s."""
 
