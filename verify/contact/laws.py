@@ -1,7 +1,7 @@
 """The switch over the friction law of a point. A law is a file with five functions; here each has its line.
 
 force   mean friction of a point in a step, N, with its own response: of `Slip`. Sets `holds`; of a set-valued law also
-        `moved` and the events. Called by the sweeps of `solver`, for a slider's single point, and by impacts.
+        `slip_by_law` and the events. Called by the sweeps of `solver`, for a slider's single point, and by impacts.
 slope   least and largest mean friction and its derivative on a `Path` without response: an increasing function of the
         end of the path gives less friction, else sliders of several points have several solutions. Called by `one_way`
         with start and end, by `active_sets` (start = end, no limit) and for the friction at the instant of a sample.
@@ -29,7 +29,7 @@ def stores_energy(law: int) -> bool:
 
 @jit(no_cpython_wrapper=True)
 def force(slip: Slip, normal: float, slider: Record, point: Record, contact: Record) -> float:
-    """Mean friction in the step, N; sets `holds`, and of a rigid point `moved` and its events."""
+    """Mean friction in the step, N; sets `holds`, and of a rigid point `slip_by_law` and its events."""
     contact.holds, contact.events = 0.0, 0
     if slider.mu * normal <= 0.0:
         return 0.0

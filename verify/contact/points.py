@@ -86,7 +86,7 @@ def set_friction(i: int, dt: float, kind: Kind, bodies: Bodies, response: Respon
     force = laws.force(slip, normal, slider, point, contact)
     if slip.own and not laws.stores_energy(point.law):
         bounded = dissipating(force, slip, contact.loss)
-        contact.moved += 0.5 * slip.compliance * (bounded - force)
+        contact.slip_by_law += 0.5 * slip.compliance * (bounded - force)
         force = bounded
     contact.slip = slip.mean + 0.5 * slip.compliance * force
     more = force - contact.friction

@@ -49,7 +49,7 @@ def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response | Non
         contact.self_response = 0.0
         if response is not None:
             contact.self_response = own_product(i, TANGENTIAL, response.shapes)
-        contact.grip = HOLDS if contact.sticks_before > 0.0 else SLIDES
+        contact.limit_state = HOLDS if contact.sticks_before > 0.0 else SLIDES
         coupled = coupled or bodies.points[i].dashpot > 0.0
     return coupled
 

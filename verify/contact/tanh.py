@@ -121,10 +121,10 @@ def force(slip: Slip, normal: float, slider: Record, point: Record, contact: Rec
 
 
 @inline
-def mean_over_line(start: float, end: float, late: float, steepness: float) -> tuple[float, float]:
+def mean_over_line(start: float, end: float, end_weight: float, steepness: float) -> tuple[float, float]:
     """(Mean of -tanh(K r), its derivative by `end`) where r goes from `start` to `end` on a line.
 
-    A share `late` of the value at its end is taken instead.
+    A share `end_weight` of the value at its end is taken instead.
     """
     t, half, middle = math.tanh(steepness * end), 0.5 * steepness * (end - start), 0.5 * steepness * (end + start)
     if abs(half) < STRAIGHT:
@@ -136,13 +136,13 @@ def mean_over_line(start: float, end: float, late: float, steepness: float) -> t
     else:
         mean = (ln_cosh(middle + half) - ln_cosh(middle - half)) / (2.0 * half)
         rate = (t - mean) / (2.0 * half)
-    return -(mean + late * (t - mean)), -steepness * (rate + late * (1.0 - t * t - rate))
+    return -(mean + end_weight * (t - mean)), -steepness * (rate + end_weight * (1.0 - t * t - rate))
 
 
 @once
 def slope(path: Path, normal: float, slider: Record, point: Record, contact: Record) -> tuple[float, float, float]:
     """(Friction, the same, its derivative by the end of the path)."""
-    limit, (mean, rate) = slider.mu * normal, mean_over_line(path.start, path.end, path.late, slider.steepness)
+    limit, (mean, rate) = slider.mu * normal, mean_over_line(path.start, path.end, path.end_weight, slider.steepness)
     return limit * mean, limit * mean, limit * rate
 
 
@@ -158,8 +158,8 @@ def power(path: Path, normal: float, slider: Record, contact: Record) -> float:
 
     A reversal with equal speeds before and after it dissipates nothing by this, as the mean force is zero.
     """
-    slip, late = 0.5 * (path.start + path.end), path.late * slider.mu * normal
-    return float(-contact.friction * slip + late * math.tanh(slider.steepness * path.end) * (path.end - slip))
+    slip, end_weight = 0.5 * (path.start + path.end), path.end_weight * slider.mu * normal
+    return float(-contact.friction * slip + end_weight * math.tanh(slider.steepness * path.end) * (path.end - slip))
 
 
 @once
