@@ -1,10 +1,10 @@
 """Friction of a slider with several points on a surface that does not respond to them.
 
 The points are coupled by the slider's gain of speed g alone, g = g_0 + dt/m sum F_i(g) with the gain g_0 by external
-forces, found by Newton's method between bounds. Friction falls with g, so that the root is the only one, but where a point may stop whose static limit
-is above its kinetic one: then the first guess, at which points that stick stay at rest, decides. The root may lie at a
-gain that stops a point, where what the other points leave is shared by the points at rest in proportion to the range of
-their forces.
+forces, found by Newton's method between bounds. Friction falls with g, so that the root is the only one, but where a
+point may stop whose static limit is above its kinetic one: then the first guess, at which points that stick stay at
+rest, decides. The root may lie at a gain that stops a point, where what the other points leave is shared by the points
+at rest in proportion to the range of their forces.
 """
 
 from verify.contact import laws
