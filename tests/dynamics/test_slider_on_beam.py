@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from verify import Excitation, Keep, PrescribedSlider, Step, simulate
+from verify.cases.slider_on_wave import terminal_speed
 from verify.dynamics.result import Motion
 from verify.errors import InputError
-from verify.motor.travelling_wave import terminal_speed
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.slider import Slider, changed

@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Excitation, Foot, InputError, PointForce, Slider, simulate
 from verify.analysis.solution_cache import SolutionCache
-from verify.exact.contact import layer
+from verify.cases import layer
+from verify.cases.foot_on_wave import foot_on_wave
 from verify.motor.curves import no_load, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
 from verify.motor.steady_state import MotorCase, crest_speed, steady_state
-from verify.motor.travelling_wave import foot_on_wave
 from verify.quantities.base import evaluate
 from verify.quantities.motor import FreeRun
 from verify.scene.load import load_scene, scene_from

@@ -1,0 +1,20 @@
+"""Decrement of an oscillator with Coulomb friction: every cycle loses the amplitude 4 F / k, whatever the amplitude."""
+
+from math import pi
+
+import numpy as np
+
+from verify.cases.base import case
+from verify.cases.contact_point import LARGE, contact_point, march
+from verify.validation import check_number
+
+START = 12.5  # amplitude over F / k: slips over the whole of the first cycle
+
+
+@case("coulomb-decrement", 4.0 * 0.041 / 47.0, 1e-17, "work of friction", mass=0.19, stiffness=47.0, force=0.041)
+def decrement(mass: float, stiffness: float, force: float, count: int = 8000) -> float:
+    """Loss of amplitude, m, under a friction force, N, by the contact engine in `count` steps a cycle."""
+    for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
+        check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
+    end = march(contact_point(0.0, 1.0, 1.0), count, 2.0 * pi / count, np.array([START + 0j]))
+    return (START - float(end.z[0].real)) * force / stiffness
