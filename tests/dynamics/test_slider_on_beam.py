@@ -256,7 +256,7 @@ def test_terminal_speed_on_a_pure_wave_equals_its_ode(kinematics, slope, amplitu
             return [v, friction]
         return [v - slope_w * rise, rise * (twist + bend * v) - 9.81 * slope_w + friction]
 
-    found = terminal_speed(PAPER, slider, amplitude, 4276.0)
+    found = terminal_speed(slider, amplitude)
     period = 2 * np.pi / (omega - k * found)
 
     def after(v):

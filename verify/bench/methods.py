@@ -296,7 +296,7 @@ def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absen
         *map(method, adapters),
     ]
     linked = DrivenChain(beam=beam, forces=problem.forces, frequency_hz=hertz, count=LINKS)
-    gap = linked.departure(end, one.initial_position(beam)).rms
+    _, gap = linked.departure(end, one.initial_position(beam))
     title = f"displacement, one-way, rms over time, {count} links, {problem.name}{absent}"
     return Question(f"engines-slider-{count}", title, "linear chain, 2048 steps a period", gap, error, methods)
 

@@ -9,6 +9,5 @@ CANTILEVER = Beam(
 )
 EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CANTILEVER.mass_per_length)
 """EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
-THICKNESS = 0.001  # m
-STRIP = Beam(length=0.5, width=0.02, thickness=THICKNESS, youngs_modulus=70e9, density=2700.0)
+STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ = 4276.0  # of the wave on `STRIP`: a wavelength of 46 mm, 46 thicknesses

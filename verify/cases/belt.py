@@ -9,9 +9,10 @@ from math import atan, pi, sqrt
 import numpy as np
 
 from verify.cases.base import case
-from verify.cases.contact_point import LARGE, contact_point, march
+from verify.cases.rigid_surface import LARGE, march, on_surface
 from verify.contact.state import STICKS
 from verify.errors import InputError
+from verify.problem.slider import Slider
 from verify.validation import check_number
 
 
@@ -28,14 +29,15 @@ def stick_slip_times(
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / count
-    contact = contact_point(belt, kinetic / static, 1.0)
-    contact.sliders["free"][0] = 0.0
-    contact.contacts["sticks"], contact.contacts["friction"] = 1.0, -1.0
+    slider = Slider(mass=1.0, mu=kinetic / static, mu_static=1.0, law="coulomb", gravity=1.0)
+    assembly = on_surface(slider, belt)
+    assembly.sliders["free"][0] = 0.0
+    assembly.contacts["sticks"], assembly.contacts["friction"] = 1.0, -1.0
     # every slip begins with the static force on a mass that moves with the belt, so that the first cycle is periodic
     steps, slip, position = count // 8, 0.0, 1.0
     z = np.array([position - 1j * belt])
     for _ in range(16):
-        recorded = march(contact, steps, step, z)
+        recorded = march(assembly, steps, step, z)
         z, elapsed = recorded.z, slip + steps * step
         sticks = recorded.events[recorded.events[:, 1] == STICKS, 0]
         if len(sticks):

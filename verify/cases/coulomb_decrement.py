@@ -5,7 +5,8 @@ from math import pi
 import numpy as np
 
 from verify.cases.base import case
-from verify.cases.contact_point import LARGE, contact_point, march
+from verify.cases.rigid_surface import LARGE, march, on_surface
+from verify.problem.slider import Slider
 from verify.validation import check_number
 
 START = 12.5  # amplitude over F / k: slips over the whole of the first cycle
@@ -16,5 +17,6 @@ def decrement(mass: float, stiffness: float, force: float, count: int = 8000) ->
     """Loss of amplitude, m, under a friction force, N, by the contact engine in `count` steps a cycle."""
     for name, value in (("mass", mass), ("stiffness", stiffness), ("force", force)):
         check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
-    end = march(contact_point(0.0, 1.0, 1.0), count, 2.0 * pi / count, np.array([START + 0j]))
+    floor = on_surface(Slider(mass=1.0, mu=1.0, law="coulomb", gravity=1.0), 0.0)
+    end = march(floor, count, 2.0 * pi / count, np.array([START + 0j]))
     return (START - float(end.z[0].real)) * force / stiffness

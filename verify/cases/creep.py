@@ -3,9 +3,9 @@
 from math import atanh
 
 from verify.cases.base import case
-from verify.cases.contact_point import contact_point, march
+from verify.cases.rigid_surface import march, on_surface
 from verify.errors import InputError
-from verify.problem.slider import GRAVITY
+from verify.problem.slider import GRAVITY, Slider
 
 STEPS = 4096
 """Steps of a decay."""
@@ -18,9 +18,9 @@ CREEP = atanh(1.9 / (0.31 * GRAVITY)) / 420.0  # m/s
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
     """Speed, m/s, of a slider with tanh friction after `time` on a surface at rest, from `speed`."""
-    contact = contact_point(speed, mu, mu, slope, gravity, mass=1.0)
-    march(contact, STEPS, time / STEPS)
-    return float(contact.sliders["v"][0])
+    assembly = on_surface(Slider(mass=1.0, mu=mu, slope=slope, speed=speed, gravity=gravity))
+    march(assembly, STEPS, time / STEPS)
+    return float(assembly.sliders["v"][0])
 
 
 @case("creep-speed", CREEP, 1e-17, "a = mu g tanh(K v)", mu=0.31, slope=420.0, acceleration=1.9)
@@ -28,12 +28,14 @@ def creep_speed(mu: float, slope: float, acceleration: float, gravity: float = G
     """Final speed, m/s, under a force per mass, m/s^2, of the contact engine, tanh law. Raises InputError."""
     if not abs(acceleration) <= BELOW * mu * gravity:
         raise InputError(f"acceleration = {acceleration!r} is not below mu g = {mu * gravity:.6g} m/s^2: lower it")
-    contact, step = contact_point(0.0, mu, mu, slope, gravity, acceleration, mass=1.0), 1.0 / (mu * gravity * slope)
+    assembly, step = on_surface(Slider(mass=1.0, mu=mu, slope=slope, gravity=gravity)), 1.0 / (mu * gravity * slope)
+    slider = assembly.sliders[0]
+    slider["external_force"] = acceleration
     for _ in range(60):
-        before = float(contact.sliders["v"][0])
-        contact.sliders["x"][0] = 0.0
-        march(contact, 100, step)
-        if abs(contact.sliders["v"][0] - before) <= 1e-15 * abs(before):
+        before = float(slider["v"])
+        slider["x"] = 0.0
+        march(assembly, 100, step)
+        if abs(slider["v"] - before) <= 1e-15 * abs(before):
             break
         step *= 2.0
-    return float(contact.sliders["v"][0])
+    return float(slider["v"])

@@ -4,12 +4,11 @@ It leaves at asin(1 / ratio), ratio = A omega^2 over the acceleration of the pre
 parabola. P. J. Holmes, J. Sound Vib. 84 (1982) 173.
 """
 
-from math import asin, cos, pi, sin, sqrt
+from math import asin, cos, pi, sin
 
 from verify.cases.base import case
-from verify.cases.beams import HERTZ, STRIP
 from verify.cases.layer import root
-from verify.cases.wave import held_on, wave_stage
+from verify.cases.wave import OMEGA, K, held_on, wave_stage
 from verify.contact.state import LANDS
 from verify.problem.slider import Contact, Slider
 
@@ -38,9 +37,7 @@ def landing_phase(ratio: float) -> float:
 @case("landing", landing_phase(1.5), 1e-14, "P. J. Holmes, J. Sound Vib. 84 (1982) 173", ratio=1.5)
 def simulated_phase(ratio: float, count: int = 64) -> float:
     """The same of hard contact held on a travelling wave, `count` steps a period; a ratio below 4.6."""
-    wave = wave_stage(STRIP, AMPLITUDE, HERTZ)
-    place = 6.5 * pi / sqrt(wave.omega / STRIP.wave_constant)  # where the wave is a sine of time
-    gravity = AMPLITUDE * wave.omega**2 / ratio
-    slider = Slider(mass=1.0, mu=0.2, law="coulomb", contact=Contact(), gravity=gravity)
-    run, _ = held_on(STRIP, wave, slider, place, count, periods=2, velocity_z=AMPLITUDE * wave.omega)
-    return float(run.events[run.events[:, 1] == LANDS, 0][0]) * wave.omega
+    place = 6.5 * pi / K  # where the wave is a sine of time
+    slider = Slider(mass=1.0, mu=0.2, law="coulomb", contact=Contact(), gravity=AMPLITUDE * OMEGA**2 / ratio)
+    run, _ = held_on(wave_stage(AMPLITUDE), slider, place, count, periods=2, velocity_z=AMPLITUDE * OMEGA)
+    return float(run.events[run.events[:, 1] == LANDS, 0][0]) * OMEGA

@@ -11,7 +11,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.cases.base import case
-from verify.cases.beams import STRIP, THICKNESS
+from verify.cases.beams import STRIP
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import check_moved, simulate
@@ -19,7 +19,7 @@ from verify.chain.system import ChainState, ChainSystem, build_system
 from verify.validation import check_number
 
 WOINOWSKY = "S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35, elliptic integral; slopes, 4.6e-6, are neglected"
-GYRATION = THICKNESS / sqrt(12.0)
+GYRATION = STRIP.surface_distance / sqrt(3.0)
 
 
 def on_sine(system: ChainSystem, height: float) -> ChainState:

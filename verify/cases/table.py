@@ -1,21 +1,12 @@
-"""All cases by name."""
+"""All cases by name: each file of this folder adds its own."""
 
-from verify.cases import (  # noqa: F401  # each adds its cases
-    belt,
-    coulomb_decrement,
-    creep,
-    elastica,
-    energy,
-    foot_on_wave,
-    hanging_chain,
-    landing,
-    large_amplitude,
-    moving_load,
-    restitution,
-    roll_up,
-    rotating_cantilever,
-    slider_on_wave,
-)
+from importlib import import_module
+from pkgutil import iter_modules
+
+import verify.cases
 from verify.cases.base import CASES
 
 __all__ = ["CASES"]
+
+for _file in iter_modules(verify.cases.__path__):
+    import_module(f"verify.cases.{_file.name}")

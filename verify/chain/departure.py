@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import ceil, pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from msgspec import structs
@@ -58,13 +58,6 @@ def linear_deflection(system: ChainSystem, times: Array, x: float | Array) -> Ar
     return deflection if np.ndim(x) else deflection[:, 0]
 
 
-class Departure(NamedTuple):
-    """Deflection of the nonlinear less the linear chain at one position, over the rms of the latter."""
-
-    end: float  # value at the end of the run
-    rms: float
-
-
 @dataclass(frozen=True, kw_only=True)
 class DrivenChain:
     """A chain from rest under harmonic forces.
@@ -94,10 +87,10 @@ class DrivenChain:
         """The system of the linear chain, of rigid links."""
         return build_system(self.beam, self.count, self.forces, self.frequency_hz, load=self.load)
 
-    def departure(self, duration: float, x: float | None = None) -> Departure:
-        """Effect of axial inertia on the deflection at x (default: mid-span), of the links of both chains.
+    def departure(self, duration: float, x: float | None = None) -> tuple[float, float]:
+        """Deflection at x (default: mid-span) less the linear chain's at the end, and its rms, over the rms of the latter.
 
-        Raises InputError at a node.
+        Of the links of both chains. Raises InputError at a node.
         """
         x = 0.5 * self.beam.length if x is None else x
         times = np.linspace(0.0, duration, max(1001, ceil(40 * self.frequency_hz * duration) + 1))
@@ -107,7 +100,7 @@ class DrivenChain:
         if not rms(linear) > NODE * largest / (system.masses.sum() * (2.0 * pi * self.frequency_hz) ** 2):
             raise InputError(f"x = {x!r}: these forces do not move the beam at this position, give another")
         gap = self.motion(times, 1e-10).deflection([x], reading="links")[:, 0] - linear
-        return Departure(float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear))
+        return float(abs(gap[-1])) / rms(linear), rms(gap) / rms(linear)
 
     def departure_over_beam(self, duration: float) -> float:
         """The same at the end of a run, rms over the joints, `START_PHASES` and the wave in either direction."""

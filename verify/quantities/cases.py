@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
+from verify.cases import layer
 from verify.errors import InputError, near_name
 from verify.quantities.base import quantity
 from verify.quantities.options import Sizes
@@ -55,24 +56,18 @@ def order(*, case: Name, counts: Sizes) -> float:
 @quantity("slider.winkler_speed_ratio", unit="1", reads=())
 def winkler_speed_ratio(*, contact_half_angle: HalfAngle, epsilon: Compliance = 0.0) -> float:
     """No-load speed over crest speed of a rigid slider on a travelling wave with a Winkler layer."""
-    from verify.cases import layer
-
     return layer.no_load_speed(contact_half_angle, epsilon)
 
 
 @quantity("slider.layer_force", unit="1", reads=())
 def layer_force(*, contact_half_angle: HalfAngle, speed_ratio: SpeedRatio, epsilon: Compliance = 0.0) -> float:
     """Friction force over mu N on a rigid slider on a travelling wave with a Winkler layer."""
-    from verify.cases import layer
-
     return layer.force(contact_half_angle, speed_ratio, epsilon)
 
 
 @quantity("slider.layer_efficiency", unit="1", reads=())
 def layer_efficiency(*, contact_half_angle: HalfAngle, speed_ratio: SlowerThanWave) -> float:
     """Efficiency of a rigid slider on a travelling wave with a Winkler layer, Coulomb friction."""
-    from verify.cases import layer
-
     return layer.efficiency(contact_half_angle, speed_ratio)
 
 

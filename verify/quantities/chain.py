@@ -117,7 +117,7 @@ def axial_departure(
     Both are read on their straight links.
     """
     chain, time = run.chain(scene, load=load, inertia=inertia, progress=cache.progress)
-    return chain.departure_over_beam(time) if of == "beam" else float(getattr(chain.departure(time), of))
+    return chain.departure_over_beam(time) if of == "beam" else chain.departure(time)[of == "rms"]
 
 
 class OnChain(msgspec.Struct, frozen=True, kw_only=True):
