@@ -88,7 +88,7 @@ class DrivenChain:
         return build_system(self.beam, self.count, self.forces, self.frequency_hz, load=self.load)
 
     def departure(self, duration: float, x: float | None = None) -> tuple[float, float]:
-        """Deflection at x (default: mid-span) less the linear chain's at the end, and its rms, over the rms of the latter.
+        """Deflection at x (default: mid-span) less the linear one at the end, and its rms, over the rms of the latter.
 
         Of the links of both chains. Raises InputError at a node.
         """
