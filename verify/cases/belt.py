@@ -9,11 +9,11 @@ from math import atan, pi, sqrt
 import numpy as np
 
 from verify.cases.base import case
-from verify.cases.rigid_surface import LARGE, march, on_surface
+from verify.cases.rigid_surface import march, on_surface
 from verify.contact.state import STICKS
 from verify.errors import InputError
 from verify.problem.slider import Slider
-from verify.validation import check_number
+from verify.validation import check_integer
 
 
 def stick_slip_times(
@@ -23,10 +23,9 @@ def stick_slip_times(
 
     Raises InputError without a stick-slip cycle.
     """
+    check_integer("count", count, 8)
     if kinetic >= static:
         raise InputError(f"kinetic = {kinetic!r} is not below static = {static!r}: no stick-slip, lower it")
-    for name, value in (("mass", mass), ("stiffness", stiffness), ("static", static), ("speed", speed)):
-        check_number(name, value, "SI", at_least=1.0 / LARGE, at_most=LARGE)
     second, metre = sqrt(mass / stiffness), static / stiffness  # units in which mass, spring and static force are 1
     belt, step = speed * second / metre, 2.0 * pi / count
     slider = Slider(mass=1.0, mu=kinetic / static, mu_static=1.0, law="coulomb", gravity=1.0)

@@ -11,6 +11,7 @@ from verify.cases.layer import root
 from verify.cases.wave import OMEGA, K, held_on, wave_stage
 from verify.contact.state import LANDS
 from verify.problem.slider import Contact, Slider
+from verify.validation import check_integer
 
 SEARCH_STEP = 2.0 * pi / 720
 """Step of the first search for a landing, rad."""
@@ -37,6 +38,7 @@ def landing_phase(ratio: float) -> float:
 @case("landing", landing_phase(1.5), 1e-14, "P. J. Holmes, J. Sound Vib. 84 (1982) 173", ratio=1.5)
 def simulated_phase(ratio: float, count: int = 64) -> float:
     """The same of hard contact held on a travelling wave, `count` steps a period; a ratio below 4.6."""
+    check_integer("count", count, 8)
     place = 6.5 * pi / K  # where the wave is a sine of time
     slider = Slider(mass=1.0, mu=0.2, law="coulomb", contact=Contact(), gravity=AMPLITUDE * OMEGA**2 / ratio)
     run, _ = held_on(wave_stage(AMPLITUDE), slider, place, count, periods=2, velocity_z=AMPLITUDE * OMEGA)

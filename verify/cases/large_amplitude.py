@@ -16,7 +16,6 @@ from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import check_moved, simulate
 from verify.chain.system import ChainState, ChainSystem, build_system
-from verify.validation import check_number
 
 WOINOWSKY = "S. Woinowsky-Krieger, J. Appl. Mech. 17 (1950) 35, elliptic integral; slopes, 4.6e-6, are neglected"
 GYRATION = STRIP.surface_distance / sqrt(3.0)
@@ -30,8 +29,7 @@ def on_sine(system: ChainSystem, height: float) -> ChainState:
 
 @case("large-amplitude", 1.317776065, 5e-6, WOINOWSKY, amplitude=2.0)
 def frequency(amplitude: float, count: int = 10) -> float:
-    """Frequency of rigid links in time. Raises InputError for an amplitude below 1e-6 (rounding) or above L/10."""
-    check_number("amplitude", amplitude, "radii of gyration", at_least=1e-6, at_most=0.1 * STRIP.length / GYRATION)
+    """Frequency of rigid links in time, for an amplitude from 1e-6 (rounding) to L/10."""
     system = replace(build_system(STRIP, count), axial_spring=STRIP.base_section.axial_stiffness / STRIP.length)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)

@@ -14,8 +14,6 @@ from verify.dynamics.linear_system import Stage, Steps
 from verify.dynamics.stepping import Assembly, Run, run_stages
 from verify.problem.slider import Slider
 
-LARGE = 1e100
-"""Largest mass, stiffness, force; the smallest is its reciprocal."""
 LEVER = 1e6
 """h/2 of the surface in units of its motion: rotations are 1e-6, their squares rounding."""
 

@@ -5,8 +5,6 @@ sign law, its median, which is twice the mean. A point that follows the surface 
 term alone.
 """
 
-from math import isfinite
-
 import numpy as np
 from msgspec.structs import replace
 
@@ -16,7 +14,6 @@ from verify.cases.wave import OMEGA, K, wave_stage
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.stepping import run_stages
-from verify.errors import InputError
 from verify.options import Kinematics
 from verify.problem.slider import Slider
 
@@ -26,11 +23,10 @@ SQUARE = (K * STRIP.surface_distance) ** 2
 def terminal_speed(slider: Slider, amplitude: float) -> float:
     """Mean speed along +x, m/s, of the periodic motion of a slider in bilateral contact with tanh friction.
 
-    Root of the change of speed over a Doppler-shifted wave period. Raises InputError without a root.
+    Root of the change of speed over a Doppler-shifted wave period; ValueError where a high wave leaves none.
     """
     from scipy.optimize import brentq
 
-    slider.check_bilateral()
     slider, mean = replace(slider, coupling="one-way"), 0.0
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:
@@ -38,16 +34,11 @@ def terminal_speed(slider: Slider, amplitude: float) -> float:
         assembly = assemble(STRIP, (slider,), (0.5 * STRIP.length,), (None,), (False,))
         assembly.sliders["v"][0] = speed
         run_stages([stage], np.empty(0, dtype=complex), assembly, np.empty(0))
-        travelled, reached = assembly.sliders["x"][0], assembly.sliders["v"][0]
-        if not isfinite(reached):
-            raise InputError(f"amplitude = {amplitude!r} m: the slider leaves the steep wave, lower it")
-        return float(travelled), float(reached) - speed
+        return float(assembly.sliders["x"][0]), float(assembly.sliders["v"][0]) - speed
 
     reach = 2.0 * K * OMEGA * amplitude * (STRIP.surface_distance + amplitude)
     for _ in range(3):
         stage = wave_stage(amplitude, mean)
-        if not period(-reach, stage)[1] > 0.0 > period(reach, stage)[1]:
-            raise InputError(f"amplitude = {amplitude!r} m: no periodic motion, raise mu or slope")
         speed = brentq(lambda v, on=stage: period(v, on)[1], -reach, reach, xtol=1e-15 * reach, rtol=1e-14)
         mean = period(float(speed), stage)[0] / stage.duration
     return mean
