@@ -9,22 +9,15 @@ from verify.cases.table import CASES
 
 @pytest.mark.parametrize(
     ("name", "first", "order"),
-    [
-        ("elastica-deflection", 20, 2.0),
-        ("elastica-shortening", 80, 2.0),
-        ("hanging-chain", 23, 2.0),
-        ("rotating-cantilever-3", 40, 2.0),
-        ("restitution", 500, 1.0),
-    ],
+    [("elastica-shortening", 80, 2.0), ("hanging-chain", 23, 2.0), ("restitution", 500, 1.0)],
 )
 def test_error_falls_with_the_order_of_the_model(name, first, order):
     counts = [first, 2 * first, 4 * first]
     assert observed_order(counts, [CASES[name].error(n) for n in counts]) == pytest.approx(order, abs=0.15)
 
 
-@pytest.mark.parametrize("name", ["moving-load-deepest", "moving-load-beside"])
-def test_segments_under_a_moving_force_deflect_as_by_frybas_series(name):
-    assert CASES[name].error() == pytest.approx(0.0, abs=1e-6)
+def test_segments_under_a_moving_force_deflect_as_by_frybas_series():
+    assert [CASES[f"moving-load-{at}"].error() for at in ("deepest", "beside")] == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("tip", ["free", "roller"])
