@@ -1,4 +1,4 @@
-"""Plain data (TOML tables, command-line words) converted to types, and the annotations of types."""
+"""Plain data (TOML tables, command-line words with units) converted to types, and the annotations of types."""
 
 import re
 from collections.abc import Iterator
@@ -9,7 +9,6 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 import msgspec
 
 from verify.errors import InputError, near_name, raise_all, shown
-from verify.units import FACTORS, in_si
 
 T = TypeVar("T")
 
@@ -19,6 +18,21 @@ _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/
 _PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false"}
 _PLAIN |= {"array": "a list", "object": "a table"}
 _LIMITS = (("gt", "above"), ("ge", "of at least"), ("lt", "below"), ("le", "of at most"))
+
+
+FACTORS = {
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254, "ft": 0.3048},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 6894.757293168361, "ksi": 6894757.293168361},
+    "kg/m^3": {"kg/m3": 1.0, "g/cm3": 1e3, "lb/in3": 0.45359237 / 0.0254**3},
+    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "lb": 0.45359237},
+    "N": {"N": 1.0, "mN": 1e-3, "kN": 1e3, "lbf": 4.4482216152605},
+    "Hz": {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
+    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "um/s": 1e-6},
+}
+"""Factor of every unit to the SI unit of the key. lb is the international pound, lbf its weight (NIST SP 811, B.8)."""
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+ALIKE = str.maketrans({"^": "", "³": "3", "µ": "u", "μ": "u"})
 
 
 def convert(data: Any, kind: type[T], where: str = "") -> T:
@@ -198,6 +212,17 @@ def typed(text: str, kind: Any, field: str) -> Any:
     if si in FACTORS and isinstance(value, str) and _WITH_UNIT.match(value):
         return in_si(value, si, field)
     return value
+
+
+def in_si(text: str, si: str, field: str) -> float:
+    """A number with one of the units of `si`, or with none in SI: '40 mm' is 0.04 of 'm'. Raises InputError."""
+    units = FACTORS.get(si, {})
+    match = re.fullmatch(rf"\s*({NUMBER})\s*(\S*)\s*", text)
+    unit = match[2].translate(ALIKE) if match else ""
+    if match is None or (unit and unit not in units):
+        choices = f" with one of the units {', '.join(units)}" if units else ""
+        raise InputError(f"{field} = {shown(text)}: give a number{choices}, without a unit it is in {si}")
+    return float(match[1]) * units.get(unit, 1.0)
 
 
 def _spelt_out(part: Any, field: str) -> list[Any]:

@@ -69,7 +69,7 @@ class GateItem(pytest.Item):
     def runtest(self) -> None:
         """Evaluate the gate; its values become JUnit properties whether it passes or not."""
         from verify.report.summary import expected
-        from verify.scene.gates import run_gate
+        from verify.scene.run import run_gate
 
         result = run_gate(self.gate, self.scene, self.cache)
         band = expected(self.gate)

@@ -11,9 +11,8 @@ from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.convert import convert
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, quantity
-from verify.scene.gates import run_gate
 from verify.scene.model import Complex, Gate, Scene
-from verify.scene.run import plan
+from verify.scene.run import plan, run_gate
 
 # --- Bands ---
 

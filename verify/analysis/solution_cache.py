@@ -5,16 +5,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
 
+from verify.analysis import comparison
+from verify.analytic_modes import ExactModel
+from verify.arrays import Array
 from verify.errors import InputError, NoBracketError
+from verify.exact.error_laws import leading_error
+from verify.linear.modes import Modes
 from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam
 
 if TYPE_CHECKING:
-    from verify.analytic_modes import ExactModel
-    from verify.arrays import Array
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
-    from verify.linear.modes import Modes
 
 EULER = "euler-bernoulli"
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
@@ -89,7 +91,7 @@ class SolutionCache:
         self._modes: dict[tuple[str, int, Settings], Modes] = {}
         self._index: dict[tuple[str, int, Settings, int], int] = {}
 
-    def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
+    def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> Modes:
         """At least `n_modes` modes of a discrete model; settings of other models are ignored. Raises InputError."""
         key = self._key(model, count, settings)
         stored = self._modes.get(key)
@@ -109,12 +111,7 @@ class SolutionCache:
 
     def exact_hz(self, mode: int, theory: str = EULER) -> float:
         """The exact frequency by a theory, Hz. Raises InputError."""
-        return self._exact_model(theory).frequency_hz(mode)  # which stores its roots
-
-    def _exact_model(self, theory: str) -> "ExactModel":
-        from verify.analytic_modes import ExactModel
-
-        return ExactModel(self.beam, theory)
+        return ExactModel(self.beam, theory).frequency_hz(mode)  # which stores its roots
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of rank `mode`, Hz; model "mean" is the middle of the bracket."""
@@ -138,20 +135,16 @@ class SolutionCache:
             return mode - 1
         key = (*self._key(model, count, settings), mode)
         if key not in self._index:
-            from verify.analysis.comparison import paired_index
-
             modes = self.modes(model, count, mode, settings)
             stride = max(len(modes.points) // (16 * modes.n_modes + 64), 1)
-            exact = self._exact_model(EULER).modes(modes.n_modes).deflection(modes.points[::stride])
-            self._index[key] = paired_index(modes, exact, mode, stride)
+            exact = ExactModel(self.beam, EULER).modes(modes.n_modes).deflection(modes.points[::stride])
+            self._index[key] = comparison.paired_index(modes, exact, mode, stride)
         return self._index[key]
 
     def frequency_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Signed error relative to the exact frequency by the same theory. Raises InputError."""
-        from verify.analysis.comparison import relative_error
-
         exact = self.exact_hz(mode, theory_of(settings))
-        return relative_error(self.paired_frequency_hz(model, count, mode, settings), exact)
+        return comparison.relative_error(self.paired_frequency_hz(model, count, mode, settings), exact)
 
     def error_or_reason(self, model: str, count: int, mode: int, settings: Settings = ()) -> tuple[float | None, str]:
         """(signed frequency error, '') or (None, reason)."""
@@ -167,15 +160,12 @@ class SolutionCache:
         and with order 2 for clamped ends with the wall joint 2EI/l. The error of the dispersion decides whether the
         bound is wider than rounding.
         """
-        from verify.analysis.comparison import EIGENVALUE_FLOOR
-        from verify.exact.error_laws import leading_error
-
         if why := unproven(self.beam, settings):
             raise NoBracketError(f"mode.bracket: {why}")
         lower, upper = (self.frequency_hz(model.name, count, mode, settings) for model in bounding())
         expected = 2.0 * leading_error(bounding()[1].name, self.beam.supports, mode, count)
         width = min((upper - lower) / upper, expected)
-        if not width > max(10.0 * EIGENVALUE_FLOOR, 1e-16 * count):
+        if not width > max(10.0 * comparison.EIGENVALUE_FLOOR, 1e-16 * count):
             raise NoBracketError(
                 f"mode.bracket: at count = {count} its width {width:.0e} is below the eigenvalue error, use a smaller "
                 "count"
@@ -186,8 +176,6 @@ class SolutionCache:
         self, model: str, count: int, mode: int, reading: str | None = None, settings: Settings = ()
     ) -> float:
         """Relative L2 error of the mass-normalised deflection at the model's nodes. Raises InputError."""
-        from verify.analysis.comparison import node_weights, shape_error
-
         modes = self.modes(model, count, mode, settings)
         if reading is not None and reading not in modes.readings:
             raise InputError(f"reading = {reading!r} is not a reading of {model}: give {', '.join(modes.readings)}")
@@ -195,8 +183,8 @@ class SolutionCache:
         exact = self.exact_shape(mode, modes.nodes, theory=theory_of(settings))
         shape = read()[self.paired_index(model, count, mode, settings)]
         mass = sum(piece.mass_per_length * piece.length for piece in self.beam.pieces)
-        return shape_error(exact, shape, node_weights(modes.nodes), mass**-0.5)
+        return comparison.shape_error(exact, shape, comparison.node_weights(modes.nodes), mass**-0.5)
 
-    def exact_shape(self, mode: int, x: "Array", derivative: int = 0, theory: str = EULER) -> "Array":
+    def exact_shape(self, mode: int, x: Array, derivative: int = 0, theory: str = EULER) -> Array:
         """The exact mass-normalised shape or a derivative at x (m), (len(x),), by a theory. Raises InputError."""
-        return self._exact_model(theory).mode_shape(mode, x, derivative)
+        return ExactModel(self.beam, theory).mode_shape(mode, x, derivative)

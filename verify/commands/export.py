@@ -14,13 +14,8 @@ from verify.io.export import write
 from verify.scene.file import load_beam
 from verify.scene.load import load_scene
 
-PARTS: dict[str | None, set[str]] = {
-    "modes": {"spectrum"},
-    "wave": {"drive", "wave"},
-    "motion": {"drive", "slider", "motion"},
-    "convergence": {"convergence"},
-}
-"""Tables of a scene that a file reads besides the beam, by its contents; all where the file type decides."""
+PARTS = {"modes": {"spectrum"}, "wave": {"drive"}, "motion": {"drive", "slider"}, "convergence": set[str]()}
+"""Tables of a scene that contents read besides the beam and their own; any where the file type decides."""
 
 
 @click.command(cls=BeamCommand)
@@ -55,7 +50,10 @@ def export(
         beam = load_beam(scene, overrides).beam
         described = describe(beam, count or fewest(beam, mode or 3, 0.01))
         return click.echo(printable(write_chain(described, Path(path))))
+    parts = what and PARTS.get(what, set()) | {what}
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
-        summary = write(load_scene(scene, overrides, PARTS.get(what)), Path(path), request, step)
+        summary = write(
+            load_scene(scene, overrides, what and PARTS.get(what, set()) | {what}), Path(path), request, step
+        )
     click.echo(printable(f"wrote {path}: {summary}"))

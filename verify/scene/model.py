@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
+from verify.actuators.on_beam import BeamInTime, beam_in_time
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
@@ -18,9 +19,6 @@ from verify.problem.slider import Slider
 from verify.problem.supports import check_free
 from verify.scene.file import NamedBeam
 from verify.validation import check_number, unit
-
-if TYPE_CHECKING:
-    from verify.actuators.on_beam import BeamInTime
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -297,10 +295,8 @@ class Scene(NamedBeam, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return ""
         return "drive.device" if self.drive.device else "drive.shunt" if self.drive.shunt else ""
 
-    def in_time(self, forces: tuple[PointForce, ...], frequency_hz: float) -> "BeamInTime":
+    def in_time(self, forces: tuple[PointForce, ...], frequency_hz: float) -> BeamInTime:
         """Beam and loads of the drive in time, with these amplitudes. Raises InputError for displacements."""
-        from verify.actuators.on_beam import beam_in_time
-
         kind, actuator = (self.drive.kind, self.drive.actuator) if self.drive else ("force", None)
         return beam_in_time(self.beam, kind, forces, actuator, frequency_hz, self.shunts)
 

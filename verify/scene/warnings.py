@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from verify.errors import InputError
+from verify.fem_beam import HermiteModel
 from verify.linear.mesh import cut_pieces
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Piece
@@ -71,8 +72,6 @@ def static_sag(beam: Beam) -> float:
     By finite elements with sections, springs, foundation and axial force. 0 for a beam with rigid motions, and for one
     that buckles.
     """
-    from verify.fem_beam import HermiteModel
-
     if beam.rigid_motions:
         return 0.0
     model = HermiteModel(beam, max(ELEMENTS, len(cut_pieces(beam))))
