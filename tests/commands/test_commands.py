@@ -132,6 +132,20 @@ def test_a_beam_in_one_line_stands_for_a_scene(data, call):
     assert (status, "segments" in out) == (0, True)
 
 
+def test_a_mode_needs_no_window_of_the_wave(call, data):
+    loaded = "--set", "beam.mass=[{position=0.25,mass=0.01}]"  # at the middle of 27 g; [wave] has its window there
+    with_mass, without = (
+        data("measure paper mode.frequency model=analytic mode=1", *words)["value"] for words in (loaded, ())
+    )
+    assert 0.756 < with_mass / without < (1.0 + 2.0 * 0.01 / 0.027) ** -0.5  # Rayleigh's bound from above
+    for refused in (
+        "plan paper",
+        "table paper --study wave",
+        "measure paper mode.frequency mode=1 model=analytic wave",
+    ):
+        assert call(refused, *loaded)[0] == 2
+
+
 def test_plan_lists_parts(data, bare):
     (table,) = data("plan bare.toml")["tables"]
     rows = {row["what"]: row for row in table["rows"]}

@@ -50,10 +50,8 @@ def export(
         beam = load_beam(scene, overrides).beam
         described = describe(beam, count or fewest(beam, mode or 3, 0.01))
         return click.echo(printable(write_chain(described, Path(path))))
-    parts = what and PARTS.get(what, set()) | {what}
+    parts = PARTS.get(what, set()) | {what} if what else None
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
-        summary = write(
-            load_scene(scene, overrides, what and PARTS.get(what, set()) | {what}), Path(path), request, step
-        )
+        summary = write(load_scene(scene, overrides, parts), Path(path), request, step)
     click.echo(printable(f"wrote {path}: {summary}"))
