@@ -1,10 +1,11 @@
 """The work-precision benchmarks."""
 
 from dataclasses import replace
+from typing import Any
 
 import click
 
-from verify.commands.shared import BeamCommand, charts_option, format_options, progress, save_charts, show
+from verify.commands.shared import BeamCommand, output_options, progress, show
 from verify.convert import convert, typed
 from verify.errors import InputError
 from verify.quantities.base import TABLES
@@ -17,16 +18,9 @@ from verify.scene.load import load_scene
 @click.option("--mode", type=click.IntRange(1), help="Mode of the sets modes and engines. Default: 22.")
 @click.option("--sizes", metavar="LIST", help="Segments and elements. Default: 24,49,98,196,392.")
 @click.option("--seconds", type=float, default=5.0, show_default=True, help="Time limit of a method and of the rounds.")
-@charts_option
-@format_options
+@output_options
 def bench(
-    sets: tuple[str, ...],
-    scene: str | None,
-    mode: int | None,
-    sizes: str | None,
-    seconds: float,
-    charts: str | None,
-    **formats: bool,
+    sets: tuple[str, ...], scene: str | None, mode: int | None, sizes: str | None, seconds: float, **formats: Any
 ) -> None:
     """Measure run time over error of all methods: modes, field, transient, slider, ride, chain, engines.
 
@@ -39,7 +33,7 @@ def bench(
     counts = convert(typed(sizes, tuple[int, ...], "--sizes"), tuple[int, ...], "--sizes") if sizes else problem.sizes
     problem = replace(problem, sizes=sorted(set(counts)), mode=mode or problem.mode)
     measured = []
-    with progress(quiet=any(formats.values())) as step:
+    with progress(quiet=True in formats.values()) as step:
         for name in sets or SETS:
             step(name)
             try:
@@ -48,6 +42,4 @@ def bench(
                 if sets:
                     raise
                 click.echo(f"verify: {error}", err=True)  # one of all sets, which this beam or machine does not have
-    table = result(measured)
-    show(table, **formats)
-    save_charts(table, charts)
+    show(result(measured), **formats)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -55,7 +56,7 @@ def chain(
     in_space: bool,
     damping: str,
     path: str | None,
-    **formats: bool,
+    **formats: Any,
 ) -> None:
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
 
@@ -80,7 +81,7 @@ def judge_chain(
     within: str,
     theory: str | None,
     corrected: str | None,
-    formats: dict[str, bool],
+    formats: dict[str, Any],
 ) -> None:
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
     files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]

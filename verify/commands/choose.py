@@ -1,5 +1,7 @@
 """`verify choose`: the smallest sufficient number of segments and elements."""
 
+from typing import Any
+
 import click
 
 from verify.analysis.margins import beam_margins
@@ -22,7 +24,7 @@ from verify.validation import Relative
 @overrides_option
 @format_options
 def choose(
-    scene: str, rules: tuple[str, ...], mode: str, error: str, overrides: tuple[str, ...], **formats: bool
+    scene: str, rules: tuple[str, ...], mode: str, error: str, overrides: tuple[str, ...], **formats: Any
 ) -> None:
     """Smallest number of segments and elements for a given accuracy, and the solve time.
 

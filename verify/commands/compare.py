@@ -1,6 +1,7 @@
 """`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -41,8 +42,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
     "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
-@shared.charts_option
-@shared.format_options
+@shared.output_options
 def compare(
     scene: str,
     words: tuple[str, ...],
@@ -56,8 +56,7 @@ def compare(
     within: str,
     theory: str | None,
     corrected: str | None,
-    charts: str | None,
-    **formats: bool,
+    **formats: Any,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
 
@@ -92,11 +91,10 @@ def compare(
     else:
         frequencies = None
     if frequencies is not None:
-        with shared.progress(quiet=any(formats.values()), lines=count is None) as step:
+        with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
             result = compare_list(loaded, frequencies, forms, options, step)
     else:
         result = compare_shapes(loaded, read_mesh(Path(words[0]), loaded.beam.length), options)
     shared.show(result, **formats)
-    shared.save_charts(result, charts)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

@@ -1,6 +1,7 @@
 """`verify diff`: what changed between two saved runs."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,7 +13,7 @@ from verify.report.archive import compare_runs, read_runs
 @click.argument("before", metavar="A")
 @click.argument("after", metavar="B")
 @format_options
-def diff(before: str, after: str, **formats: bool) -> None:
+def diff(before: str, after: str, **formats: Any) -> None:
     """Show gates, inputs and versions that differ between A and B; exit 1 where a gate that passed does not any more.
 
     Each is a run.json, the folder of a run, of a scene's runs (the newest) or of all reports (the newest of each).

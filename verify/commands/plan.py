@@ -1,5 +1,7 @@
 """`verify plan`: which parts of a scene run."""
 
+from typing import Any
+
 import click
 
 from verify.commands.shared import format_options, overrides_option, scene_argument, show
@@ -13,7 +15,7 @@ from verify.scene.warnings import scene_warnings
 @scene_argument
 @overrides_option
 @format_options
-def plan(scene: str, overrides: tuple[str, ...], **formats: bool) -> None:
+def plan(scene: str, overrides: tuple[str, ...], **formats: Any) -> None:
     """Show which gates and studies of SCENE run, which are skipped, and why. Nothing is solved.
 
     Example: `verify plan paper --set beam.length=0.4`

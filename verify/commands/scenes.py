@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from shlex import quote
+from typing import Any
 
 import click
 
@@ -16,7 +17,7 @@ from verify.scene import file as files
 @click.group(invoke_without_command=True)
 @format_options
 @click.pass_context
-def scenes(context: click.Context, /, **formats: bool) -> None:
+def scenes(context: click.Context, /, **formats: Any) -> None:
     """List the packaged scenes; show one, or write a new one."""
     if context.invoked_subcommand is not None:
         return

@@ -67,16 +67,26 @@ def cluster_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--local-cluster", metavar="N", type=number, help=local, **hidden)(command)
 
 
-charts_option = click.option("--charts", metavar="FOLDER", help="Write the charts to FOLDER as SVG and PNG.")
-
-
 def format_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add `--json`, `--csv` and `--markdown`, passed as `as_json`, `as_csv`, `as_markdown` (see `show`)."""
     return json_option(csv_option(markdown_option(command)))
 
 
-def show(result: Result, *, as_json: bool = False, as_csv: bool = False, as_markdown: bool = False) -> None:
-    """Print a result on standard output: for a person, or in one of the formats for programs.
+def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options of `format_options`, and `--charts`."""
+    text = "Write the charts to FOLDER as SVG and PNG."
+    return click.option("--charts", metavar="FOLDER", help=text)(format_options(command))
+
+
+def show(
+    result: Result,
+    *,
+    as_json: bool = False,
+    as_csv: bool = False,
+    as_markdown: bool = False,
+    charts: str | None = None,
+) -> None:
+    """Print a result on standard output: for a person, or in one of the formats for programs; write its charts.
 
     Raises click.UsageError for more than one format, InputError for CSV or Markdown of a result without a table.
     """
@@ -91,13 +101,12 @@ def show(result: Result, *, as_json: bool = False, as_csv: bool = False, as_mark
         click.echo(result.tables[0].csv() if as_csv else result.tables[0].markdown(), nl=False)
     else:
         result.print(console())
+    if charts is not None:
+        _save_charts(result, writable_folder(Path(charts), "--charts"))
 
 
-def save_charts(result: Result, charts: str | None) -> None:
-    """Write every chart of a result as ID.svg and ID.png; nothing where no folder is given. Raises InputError."""
-    if charts is None:
-        return
-    folder = writable_folder(Path(charts), "--charts")
+def _save_charts(result: Result, folder: Path) -> None:
+    """Write every chart of a result as ID.svg and ID.png. Raises InputError."""
     for figure in result.figures:
         svg, png = figure_files(figure)
         write_whole(folder / f"{figure.id}.svg", svg, "--charts")

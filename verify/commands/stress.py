@@ -1,5 +1,7 @@
 """The stress checks."""
 
+from typing import Any
+
 import click
 
 from verify.commands.shared import GATE_FAILED, format_options, progress, show
@@ -12,7 +14,7 @@ from verify.stress.report import result
 @click.option("--slow", is_flag=True, help="Run the checks that take minutes as well.")
 @click.option("--list", "listed", is_flag=True, help="List the checks and run none.")
 @format_options
-def stress(ids: tuple[str, ...], slow: bool, listed: bool, **formats: bool) -> None:
+def stress(ids: tuple[str, ...], slow: bool, listed: bool, **formats: Any) -> None:
     """Run the numerical stress checks and report where each tolerance is exceeded; exit 1 where one fails.
 
     Each check measures an error along one parameter, up to where it exceeds its tolerance or the input is refused.

@@ -20,16 +20,8 @@ from verify.studies.sweep import Sweep
 @shared.overrides_option
 @click.option("--to", "file", metavar="FILE", help="Append each row to FILE; the same sweep continues from it.")
 @shared.cluster_options
-@shared.charts_option
-@shared.format_options
-def sweep(
-    scene: str,
-    words: tuple[str, ...],
-    overrides: tuple[str, ...],
-    file: str | None,
-    charts: str | None,
-    **formats: bool,
-) -> None:
+@shared.output_options
+def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], file: str | None, **formats: Any) -> None:
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
     A KEY with a dot is a value of the scene, one without is an argument of the quantities; a value that is a list is in
@@ -55,9 +47,8 @@ def sweep(
     words_given = Sweep(quantities=tuple(quantities), over=over, arguments=arguments)
     study = words_given if quantities else loaded.studies.get("sweep") or convert({}, Sweep, "sweep")
     study.check(loaded)
-    with shared.progress(quiet=any(formats.values())) as step:
+    with shared.progress(quiet=True in formats.values()) as step:
         result = study.run(loaded, SolutionCache(loaded.beam), step, Path(file) if file else None)
     shared.show(result, **formats)
-    shared.save_charts(result, charts)
     if all(reasons := [row["reason"] for row in result.data["rows"]]):
         raise InputError(f"no combination has a value, the first one because {reasons[0]}")

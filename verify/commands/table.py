@@ -1,5 +1,7 @@
 """`verify table`: the result of one study."""
 
+from typing import Any
+
 import click
 
 from verify.analysis.solution_cache import SolutionCache
@@ -21,11 +23,8 @@ READS |= {"motion": IN_TIME, "motor": IN_TIME, "control": IN_TIME}
 @click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")
 @shared.overrides_option
 @shared.cluster_options
-@shared.charts_option
-@shared.format_options
-def table(
-    scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], charts: str | None, **formats: bool
-) -> None:
+@shared.output_options
+def table(scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], **formats: Any) -> None:
     """Run one study of SCENE and print its tables; KEY=VALUE sets an option of the study.
 
     Example: `verify table steel-cantilever modes=1-5 counts=10,20,49 wall=gregory,half`
@@ -40,7 +39,6 @@ def table(
     loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)), parts)
     chosen = loaded.studies.get(study) or convert({}, STUDIES[study], study)
     chosen.check(loaded)
-    with shared.progress(chosen.steps or None, quiet=any(formats.values()), lines=chosen.steps > 0) as step:
+    with shared.progress(chosen.steps or None, quiet=True in formats.values(), lines=chosen.steps > 0) as step:
         result = chosen.run(loaded, SolutionCache(loaded.beam), step)
     shared.show(result, **formats)
-    shared.save_charts(result, charts)
