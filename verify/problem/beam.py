@@ -94,7 +94,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         """Rho A of the beam's own section, kg/m."""
         return self.base_section.mass_per_length
 
-    @property
+    @cached_property
     def stepped(self) -> bool:
         """Whether a piece differs from the beam's own section."""
         return any(replace(piece, length=self.length) != self.base_section for piece in self.pieces)
@@ -126,7 +126,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
             if name not in allowed:
                 raise InputError(f"beam.{name}: {model} does not model it, leave it out or {remedy}")
 
-    @property
+    @cached_property
     def rigid_lines(self) -> tuple[tuple[float, float], ...]:
         """Rigid-body motions w = a + b x, as (a, b) with x in m: none, one or two."""
         ends = zip((0.0, self.length), self.supports, strict=True)
