@@ -28,9 +28,10 @@ from verify.engines import ENGINES, chain_of
 from verify.engines.description import in_plane
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
-from verify.options import Support, Theory
 from verify.problem.beam import Beam
+from verify.problem.supports import Support
 from verify.segment_model import SegmentModel
+from verify.settings import Theory
 
 PAIRS: tuple[tuple[Support, Support], ...]
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "rayleigh", "timoshenko")

@@ -37,6 +37,7 @@ from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT
 from verify.validation import check_integer
 
 EXACT_MODES = 400  # default number of modes of a time basis; higher modes respond quasi-statically
@@ -66,10 +67,10 @@ class ExactModel(BeamModel):
     modal_settings: ClassVar[tuple[str, ...]] = ("theory",)
 
     beam: Beam
-    theory: str = "euler-bernoulli"
+    theory: str = DEFAULT.theory
 
     def __post_init__(self) -> None:
-        self.check_theory()
+        self.check_settings()
 
     @property
     def n_elastic(self) -> int:

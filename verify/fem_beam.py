@@ -25,9 +25,9 @@ from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
-from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT, Theory
 from verify.validation import MOST_PARTS, check_integer
 
 RIGID = 1e14  # largest stiffness relative to that of an element: above it frequencies change by less than 1e-13
@@ -44,8 +44,8 @@ class HermiteModel(DiscreteModel):
 
     beam: Beam
     n_elements: int
-    grading: float = 1.0
-    theory: Theory = "euler-bernoulli"
+    grading: float = DEFAULT.grading
+    theory: Theory = DEFAULT.theory
 
     name = "fem"
     parts = "elements"
@@ -57,7 +57,7 @@ class HermiteModel(DiscreteModel):
 
     def __post_init__(self) -> None:
         check_integer("n_elements", self.n_elements, 1, MOST_PARTS)
-        self.check_theory()
+        self.check_settings()
         check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
         self.check_memory()
 

@@ -29,7 +29,6 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import Parts, check_division, divide
-from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.problem.beam import Beam
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
@@ -39,12 +38,12 @@ from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
-from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
+from verify.settings import DEFAULT, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
+from verify.validation import MOST_PARTS, check_integer, python_scalar
 
 if TYPE_CHECKING:
     from verify.engines.description import RigidChain
 
-_WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
 """Smallest N for which the mass matrix with tensioned Timoshenko joints is positive definite at all supports."""
 _PASSES, _CONVERGED = 60, 1e-13
@@ -67,34 +66,31 @@ class SegmentModel(ChainStructure):
     beam: Beam
     n_segments: int
     _: KW_ONLY
-    wall: Wall = "gregory"
+    wall: Wall = DEFAULT.wall
     """Compliances of the joints at a clamped end, in l/EI: "gregory" 3/8, 7/6, 23/24; "half" 1/2, the literature's."""
-    joints: Joints = "series"
+    joints: Joints = DEFAULT.joints
     """Eq. (1) corrected ("series") or as "printed"; "tensioned" is of order 4 under axial force too."""
-    grading: float = 1.0
+    grading: float = DEFAULT.grading
     """Length of a section's last link over its first; lengths are in geometric progression."""
-    theory: Theory = "euler-bernoulli"
-    attachment: Attachment = "reciprocal"
+    theory: Theory = DEFAULT.theory
+    attachment: Attachment = DEFAULT.attachment
     """Distribution of attached bodies and springs: over four joints, order 4, or to their rigid link ("lever")."""
-    load: Load = "reciprocal"
+    load: Load = DEFAULT.load
     """Distribution of point forces: over four joints, order 4, or the two joints of their link ("lever"), order 2."""
-    reading: Reading = "corrected"
+    reading: Reading = DEFAULT.reading
     """Deflection between joints: spline through "corrected" or "raw" joint positions, or the rigid "links"."""
-    joint_dashpot: float = 0.0
+    joint_dashpot: float = DEFAULT.joint_dashpot
     """c of a dashpot at every joint, N m s, in harmonic motion."""
 
     def __post_init__(self) -> None:
         for one in fields(self):
             object.__setattr__(self, one.name, python_scalar(getattr(self, one.name)))
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
-        for name, words in _WORDS.items():
-            check_choice(name, getattr(self, name), words)
-        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
-        self.check_theory()
+        self.check_settings()
         check_division(self.beam, self.n_segments, self.grading)
-        if self.wall == "welded" and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if self._first_joint and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
-                "wall = 'welded' is for uniform beams of equal segments without attachments: choose another wall"
+                f"wall = {self.wall!r} is for uniform beams of equal segments without attachments: choose another wall"
             )
         if self.joints == "tensioned" and self.theory == "timoshenko" and self.n_segments < _FEWEST_CORRECTED:
             raise InputError(
@@ -110,9 +106,13 @@ class SegmentModel(ChainStructure):
 
     @property
     def unit(self) -> float:
-        """Mean length of a link, m; wall = "welded": half a link at each clamped end is not counted."""
-        halves = self.beam.supports.count("clamped") if self.wall == "welded" else 0
-        return self.beam.length / (self.n_segments + 0.5 * halves)
+        """Mean length of a link, m, without what is part of a clamped wall."""
+        return self.beam.length / (self.n_segments + self._first_joint * self.beam.supports.count("clamped"))
+
+    @property
+    def _first_joint(self) -> float:
+        """Distance of the first joint from a clamped wall, in links."""
+        return WALLS[self.wall].first
 
     # --- Links, joints and walls ---------------------------------------------------------------------------------
 
@@ -133,7 +133,7 @@ class SegmentModel(ChainStructure):
         return Chain(
             supports=self.beam.supports,
             unit=self.unit,
-            start=0.5 * (self.wall == "welded" and self.beam.supports[0] == "clamped"),
+            start=self._first_joint * (self.beam.supports[0] == "clamped"),
             lengths=lengths,
             compliances=compliances,
             masses=masses,

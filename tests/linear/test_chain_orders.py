@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from tests.beams import ABSTRACT, mass, spring, supported
 from verify import Beam, ExactModel, PointMass, PointSpring, Section, SegmentModel
-from verify.options import WALLS
+from verify.settings import WALLS
 
 LEVER, TENSIONED, SHEAR = {"attachment": "lever"}, {"joints": "tensioned"}, {"theory": "timoshenko"}
 RAYLEIGH, GRADED = {"theory": "rayleigh"}, {"grading": 2.0}
@@ -42,7 +42,7 @@ def add(name, beam, mode, counts, due, low, high, spread=1, **settings):
 
 # walls
 for pair in combinations_with_replacement("PCFG", 2):
-    for wall in WALLS:
+    for wall in (name for name, rule in WALLS.items() if not rule.fault):
         name, settings = f"{pair[0]}{pair[1]} {wall}", {"wall": wall}
         if "C" not in pair:
             add(name, on(pair), 2, (40, 80), 4, -0.04, 0.04, **settings)

@@ -8,6 +8,7 @@ import msgspec
 from verify.errors import InputError, NoBracketError
 from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam
+from verify.settings import DEFAULT
 
 if TYPE_CHECKING:
     from verify.analytic_modes import ExactModel
@@ -42,7 +43,7 @@ def unproven(beam: Beam, settings: Settings = ()) -> str:
     """Reason why segments are not proven to lie below and elements above the exact frequencies; empty if proven."""
     if added := (*beam.features, *("section",) * bool(beam.section)):
         return f"no bound is proven for a beam with beam.{added[0]}, leave it out"
-    chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)
+    chosen = {"theory": EULER, "grading": 1.0, "wall": DEFAULT.wall, **dict(settings)}
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}
     for name, value in chosen.items():
         if value != proven.get(name, value):

@@ -20,9 +20,9 @@ from verify.chain.motion import ChainMotion, Progress, check_moved, from_rest, s
 from verify.chain.statics import bend
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system, link_at, straight_chain
 from verify.errors import InputError
-from verify.options import Inertia, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce
 from verify.segments.chain import link_inertia
+from verify.settings import Inertia, Links, Load, Tip, Wall
 from verify.validation import check_integer, check_number
 
 CANTILEVER = Beam(

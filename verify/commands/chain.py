@@ -7,6 +7,7 @@ import click
 
 from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
+from verify.settings import DEFAULT, wall_label
 
 if TYPE_CHECKING:
     from verify.engines.description import RigidChain
@@ -27,7 +28,7 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
 @click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
 @click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
-@click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
+@click.option("--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help="Joints at a clamped end.")
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
@@ -84,7 +85,7 @@ def judge_chain(
         raise SystemExit(GATE_FAILED)
 
 
-def fewest(beam: "Beam", mode: int, error: float, wall: str = "gregory", in_space: bool = False) -> int:
+def fewest(beam: "Beam", mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
     """The smallest number of links that is within the error at a mode, and so is the next one tried."""
     from verify.engines.description import MOST_LINKS, describe
 
@@ -106,13 +107,15 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     from verify.analysis.margins import beam_margins
     from verify.analysis.solution_cache import SolutionCache
     from verify.analysis.verdict import Margin
-    from verify.engines.description import RULES, describe
+    from verify.engines.description import describe
     from verify.engines.writers import data, table
     from verify.report.result import Column, Result, Table
 
     walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
     others = {
-        RULES[wall]: describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls if wall != chain.wall
+        f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space)
+        for wall in walls
+        if wall != chain.wall
     }
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
@@ -127,7 +130,7 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         name = f"discretisation of {n} links in {axis}"
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
-    rule = f", {RULES[chain.wall]} at the wall" if walls else ""
+    rule = f", {wall_label(chain.wall)}" if walls else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.beam.mass or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")

@@ -6,7 +6,7 @@ import click
 
 from verify.commands import shared
 from verify.commands.chain import CHAINS, judge_chain
-from verify.options import THEORIES
+from verify.settings import THEORIES
 
 UNITS = ("Hz", "kHz", "mHz", "rad/s", "1/min", "Hz/(2 pi)", "rad2/s2", "s", "ms")
 """As in `compare.reading.UNITS`: rad2/s2 are squares of omega, s and ms periods."""

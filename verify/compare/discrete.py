@@ -13,14 +13,11 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.linear.system import StructuralSystem
-from verify.options import WALLS
 from verify.problem.beam import Beam
 
 STEPS = ("centre", "outboard", "inboard", "mean")
 """Joint rules of equal links with the section at their centre: two half links, EI/l of the link beyond the joint or in
 front of it, mean EI."""
-WALL_COMPLIANCE = {"rigid": 0.0, "stiff": 0.25}
-"""Compliance of the joint at a clamped end, in l/EI: EI/l, first link fixed to the wall, 4EI/l."""
 MASSLESS = 1e-12
 """Rotary inertia over m l^2 in place of zero: negligible, keeps the mass matrix regular."""
 NODE_INERTIA = {"lumped": MASSLESS, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
@@ -124,11 +121,7 @@ class DiscreteBeam:
             near, far = far, near
         rules = {"outboard": far, "inboard": near, "mean": 2.0 / (1.0 / near + 1.0 / far)}
         whole = np.concatenate([links[:1], rules.get(self.joints, 0.5 * (near + far)), links[-1:]])
-        rule = wall if wall in WALLS else "welded"  # one joint EI/l
-        whole *= wall_factors(self.beam.supports, self.n, rule)
-        clamped = [support == "clamped" for support in self.beam.supports]
-        whole[[0, -1]] *= np.where(clamped, WALL_COMPLIANCE.get(wall, 1.0), 1.0)
-        return whole
+        return np.asarray(whole * wall_factors(self.beam.supports, self.n, wall))
 
     def _lowest_hz(self, n_modes: int, strain: Any, stiffness: Array, mass: Any, free: Any) -> Array:
         """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then rotations."""

@@ -23,18 +23,17 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT, WALLS, Theory
 from verify.validation import check_choice, check_integer, check_number, check_type
 
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed",
-         "third-order": "weights 5/12, 13/12", "five-joint": "five-joint weights"}  # fmt: skip
-"""Joints at a clamped end."""
+RULES = tuple(name for name, rule in WALLS.items() if not rule.first)
+"""Joints at a clamped end: the rules of `settings` whose joint 0 is at the wall."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
@@ -205,18 +204,18 @@ def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: in
 
 
 def describe(
-    beam: Beam, count: int, *, wall: str = "gregory", in_space: bool = False, damping: float = 0.0
+    beam: Beam, count: int, *, wall: str = DEFAULT.wall, in_space: bool = False, damping: float = 0.0
 ) -> RigidChain:
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
-    `wall`: joints at a clamped end, one of `RULES`; "rigid" fixes the first link to the wall. `damping`:
-    damping ratio of the first mode about every axis. Joint 0 is at the end with the stronger support.
+    `wall`: joints at a clamped end, one of `RULES`. `damping`: damping ratio of the first mode about every axis.
+    Joint 0 is at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
-    check_choice("wall", wall, tuple(RULES))
+    check_choice("wall", wall, RULES)
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
@@ -226,10 +225,15 @@ def describe(
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
     behind = [one for one in beam.spring if one.rotational and one.position in {0.0, beam.length} - {*turning}]
     series = tuple(PointSpring(position=one.position, rotational=one.rotational) for one in behind)
-    bare, rule = msgspec.structs.replace(beam, mass=(), spring=series), "full" if wall == "rigid" else wall
-    models = {a: SegmentModel(in_plane(bare, a), count, wall=rule) for a in AXES[: 1 + in_space]}  # type: ignore[arg-type]
+    bare, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
+    linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
+    models = {a: SegmentModel(in_plane(bare, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
     springs = {axis: one.beam.bending_stiffness / unit / one.chain.compliances for axis, one in models.items()}
+    walls = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped" and rule.fault]
+    fixed = [] if rule.weights[0] else walls
+    for stiffness in springs.values() if not fixed else ():
+        stiffness[walls] /= rule.weights[0]
     lengths, sections = parts.lengths * unit, np.zeros((count, 3))
     masses = lengths * parts.masses_per_length * beam.mass_per_length
     bodies = [
@@ -248,7 +252,6 @@ def describe(
         inertias[link] += inertia + share * masses[link] * apart**2 * np.array([0.0, 1.0, 1.0])
         centres[link] += share * apart
         masses[link] += mass
-    fixed = [end for end, s in zip((0, count), beam.supports, strict=True) if s == "clamped" and wall == "rigid"]
     nodes, values = chain.nodes.tolist(), {axis: one.tolist() for axis, one in springs.items()}
     hinges = [() if j in fixed else tuple(Hinge(a, k[j]) for a, k in values.items()) for j in range(count + 1)]
     links = zip(

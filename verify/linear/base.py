@@ -12,10 +12,10 @@ from verify.linear.field import HarmonicField, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Kind, Loads, Numbers, loads_on
 from verify.linear.time_basis import TimeBasis
-from verify.options import THEORIES
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.device import Device
-from verify.validation import as_tuple, check_choice, check_integer, check_type
+from verify.settings import DEFAULT, check_setting
+from verify.validation import as_tuple, check_integer, check_type
 
 Devices: TypeAlias = Device | Sequence[Device]
 """One device, or several."""
@@ -53,7 +53,7 @@ class BeamModel(ABC):
     modal_settings: ClassVar[tuple[str, ...]] = ()
     """Settings of `analysis.variants` on which the frequencies depend."""
     beam: Beam
-    theory: str = "euler-bernoulli"
+    theory: str = DEFAULT.theory
 
     def __init_subclass__(cls) -> None:
         """The default title is the name; methods that compute have one thread of BLAS."""
@@ -161,10 +161,11 @@ class BeamModel(ABC):
                 "modes, raise count"
             )
 
-    def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for missing section properties of the theory."""
+    def check_settings(self) -> None:
+        """Raise InputError for an unknown setting, and for missing section properties of the theory."""
         check_type("beam", self.beam, Beam)
-        check_choice("theory", self.theory, THEORIES)
+        for name in self.settings():
+            check_setting(name, getattr(self, name))
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
                 f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "

@@ -27,9 +27,9 @@ from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.linear.surface import section_at
-from verify.options import Start
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.slider import Slider
+from verify.settings import Start
 
 Figure = Literal["force", "normal force", "fractions", "powers"]
 BATCHES = 16

@@ -4,9 +4,9 @@ import re
 from typing import Any
 
 from verify.errors import InputError, near_name, shown
-from verify.options import SUPPORTS
 from verify.problem.cross_section import SIZES
 from verify.problem.materials import MATERIALS, SPELLINGS
+from verify.problem.supports import SUPPORTS
 from verify.units import NUMBER, in_si
 
 EXAMPLE = "1 m x 40 x 8 mm steel, clamped-free"

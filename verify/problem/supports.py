@@ -1,9 +1,13 @@
 """The four supports of a beam's end by the motions that they prevent: deflection w, rotation w'."""
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from verify.errors import InputError
+
+Support = Literal["pinned", "clamped", "free", "guided"]
+SUPPORTS: tuple[str, ...] = get_args(Support)
+"""Support of an end of a beam. pinned: w = 0. clamped: w = w' = 0. free: no constraint. guided: w' = 0."""
 
 
 class Fixity(NamedTuple):

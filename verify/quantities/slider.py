@@ -6,7 +6,7 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify import options
+from verify import settings
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.problem.slider import Slider, changed
@@ -35,7 +35,7 @@ class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
     count: opt.Size | None = None
     theory: opt.TimeTheory = "euler-bernoulli"
     time: Time | None = None
-    start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
+    start: Annotated[settings.Start, Meta(description="default: the scene's motion.start")] | None = None
     soft_start_periods: opt.SoftStart | None = None
     modal_damping: opt.ModalDamping | None = None
     modes: Annotated[int, Meta(ge=1, description="number, for model = analytic from rest; default: 400")] | None = None
@@ -48,10 +48,10 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
     mu: opt.Mu | None = None
     slope: opt.Slope | None = None
     mass: opt.Mass | None = None
-    law: Annotated[options.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
-    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] | None = None
-    coupling: Annotated[options.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
-    normal: Annotated[options.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
+    law: Annotated[settings.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
+    kinematics: Annotated[settings.Kinematics, Meta(description="kinematics of the slider")] | None = None
+    coupling: Annotated[settings.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
+    normal: Annotated[settings.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
     slider_position: Annotated[Place, Meta(description="initial position, m")] | None = None
     slider_speed: Annotated[float, Meta(description="initial speed, m/s")] | None = None
     step: Annotated[float, Meta(gt=0, description="time step of the slider, s; default: automatic")] | None = None
@@ -254,7 +254,7 @@ def terminal_speed(
     amplitude: Annotated[float, Meta(gt=0, description="amplitude of the wave, m")],
     slope: opt.Slope,
     mu: opt.Mu,
-    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
+    kinematics: Annotated[settings.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
 ) -> float:
     """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
     from verify.motor.travelling_wave import terminal_speed

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify import options
+from verify import settings
 from verify.actuators.patch import Patch
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
+from verify.settings import DEFAULT
 from verify.validation import Relative, check_sizes
 
 if TYPE_CHECKING:
@@ -29,13 +30,13 @@ class FieldSettings(opt.DriveOptions, frozen=True, kw_only=True):
     """Drive, losses and settings of a harmonic field."""
 
     loss_factor: Annotated[Relative, Meta(description="eta in E (1 + i eta); default: the beam's")] | None = None
-    drive: Annotated[options.DriveKind, Meta(description="kind of drive; default: the scene's")] | None = None
-    theory: opt.Theory = "euler-bernoulli"
-    load: Annotated[options.Load, Meta(description="segment: distribution of a force over joints")] = "reciprocal"
-    reading: Annotated[options.Reading, Meta(description="segment: interpolation between joints")] = "corrected"
-    wall: opt.Wall = "gregory"
-    joints: opt.Joints = "series"
-    attachment: opt.Attachment = "reciprocal"
+    drive: Annotated[settings.DriveKind, Meta(description="kind of drive; default: the scene's")] | None = None
+    theory: settings.Theory = DEFAULT.theory
+    load: settings.Load = DEFAULT.load
+    reading: settings.Reading = DEFAULT.reading
+    wall: settings.Wall = DEFAULT.wall
+    joints: settings.Joints = DEFAULT.joints
+    attachment: settings.Attachment = DEFAULT.attachment
 
 
 class FieldOptions(FieldSettings, frozen=True, kw_only=True):
@@ -53,7 +54,7 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
         model, count = options.model, options.count
     opt.check_count(model, count)
     of_case = (*opt.DriveOptions.__struct_fields__, "loss_factor", "drive", "model", "count")
-    settings = dict(opt.check_settings(model, opt.not_default(options, without=of_case)))
+    chosen = dict(opt.check_settings(model, opt.not_default(options, without=of_case)))
     beam = scene.beam if options.loss_factor is None else replace(scene.beam, loss_factor=options.loss_factor)
     kind = options.drive or (scene.drive.kind if scene.drive else "force")
     forces, actuator = options.forces(scene), scene.drive.actuator if scene.drive else None
@@ -61,7 +62,7 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
         driven = [force.position for force in forces] if kind in ("voltage", "current") else []
         actuator, beam = actuator.bonded(beam), actuator.on(beam, [*driven, *(x for x, _ in scene.shunts)])
     return DrivenCase(
-        model=MODELS.named(model).build(beam, count, **settings),
+        model=MODELS.named(model).build(beam, count, **chosen),
         forces=forces,
         frequency_hz=opt.drive_frequency(scene, options.frequency_hz),
         kind=kind,

@@ -10,12 +10,12 @@ from verify.arrays import Array
 from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts
 from verify.linear.system import StructuralSystem
-from verify.options import Attachment, Joints, Wall
 from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights
 from verify.segments.bodies import Attached
 from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
+from verify.settings import Attachment, Joints, Wall
 
 
 class ChainStructure(DiscreteModel):
