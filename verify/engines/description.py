@@ -32,8 +32,6 @@ from verify.validation import check_choice, check_integer, check_number, check_t
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
-RULES = tuple(name for name, rule in WALLS.items() if not rule.first)
-"""Joints at a clamped end: the rules of `settings` whose joint 0 is at the wall."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
@@ -208,14 +206,14 @@ def describe(
 ) -> RigidChain:
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
-    `wall`: joints at a clamped end, one of `RULES`. `damping`: damping ratio of the first mode about every axis.
-    Joint 0 is at the end with the stronger support.
+    `wall`: a rule whose joint 0 is at the wall. `damping`: damping ratio of the first mode about every axis. Joint 0 is
+    at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
-    check_choice("wall", wall, RULES)
+    check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)

@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.description import RULES, Hinge, Joint, Link, RigidChain, in_plane
+from verify.engines.description import Hinge, Joint, Link, RigidChain, in_plane
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
 from verify.problem.beam import Beam
@@ -164,7 +164,7 @@ def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str,
     held = bool(np.isnan(k[0]))
     names = ["rigid", ADAPTED, SERIES] if held else ["full"]
     if support == "clamped" and not held:
-        names = [name for name in RULES if WALLS[name].weights[0]]
+        names = [name for name, rule in WALLS.items() if not rule.first and rule.weights[0]]
     others: Any = {ADAPTED: HELD, SERIES: weld}
     rows = [np.array(others[name] if name in others else WALLS[name].weights) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
