@@ -64,13 +64,9 @@ class ExactModel(BeamModel):
     title: ClassVar[str] = "exact beam"
     colour: ClassVar[str] = "#8a8f98"
     sized: ClassVar[bool] = False
-    modal_settings: ClassVar[tuple[str, ...]] = ("theory",)
 
     beam: Beam
     theory: str = DEFAULT.theory
-
-    def __post_init__(self) -> None:
-        self.check_settings()
 
     @property
     def n_elastic(self) -> int:

@@ -53,11 +53,10 @@ class HermiteModel(DiscreteModel):
     colour = "#e8760c"
     bounds = "above"
     library = "scikit-fem"
-    modal_settings = ("grading", "theory")
 
     def __post_init__(self) -> None:
         check_integer("n_elements", self.n_elements, 1, MOST_PARTS)
-        self.check_settings()
+        super().__post_init__()
         check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
         self.check_memory()
 

@@ -27,31 +27,30 @@ class WallRule(NamedTuple):
     """Whether only chains of other programs have the rule, which `verify compare` and `chain` recognise."""
 
     @property
+    def corrections(self) -> tuple[float, ...]:
+        """Corrections of the weights 1, in l/EI."""
+        return tuple(weight - 1.0 for weight in self.weights)
+
+    @property
     def order(self) -> int:
         """Order of the frequencies of a uniform beam: that of the quadrature, at most 4, that of the inner joints.
 
-        A sum of f(first + k) over k >= 0 with weights w_k lacks the integral from 0 by f^(p)(0)/p! times the moment
-        sum (w_k - 1) (first + k)^p - B_{p+1}(first)/(p + 1), p = 0, 1, ..., with Bernoulli polynomials B (Euler and
-        Maclaurin); the first moment that is not zero gives the order p + 1.
+        It is p + 1 of the first moment that does not vanish (`docs/theory.md`, "Walls").
         """
-        s = self.first
+        s = self.first  # B_{p+1}(s)/(p + 1), p = 0, 1, 2, of Bernoulli's polynomials:
         integrals = s - 1 / 2, (s**2 - s + 1 / 6) / 2, (s**3 - 3 * s**2 / 2 + s / 2) / 3
         for p, integral in enumerate(integrals):
-            moment = sum((w - 1) * (s + k) ** p for k, w in enumerate(self.weights))
+            moment = sum(a * (s + k) ** p for k, a in enumerate(self.corrections))
             if abs(moment - integral) > 1e-9:  # sums of fractions with rounding; a wrong digit is far above
                 return p + 1
         return 4
 
 
 WALLS: dict[str, WallRule] = {
-    # Gregory's end correction of the trapezoidal rule
-    "gregory": WallRule("3/8, 7/6, 23/24", (3 / 8, 7 / 6, 23 / 24)),
-    # the literature's spring, Eq. (1) with a rigid neighbour
-    "half": WallRule("2EI/l", (1 / 2,)),
-    # the spring of an inner joint, a frequent mistake
-    "full": WallRule("EI/l", (1.0,)),
-    # midpoint rule: half a link is part of the wall, and a whole joint EI/l follows it
-    "welded": WallRule("half a link welded", first=0.5),
+    "gregory": WallRule("3/8, 7/6, 23/24", (3 / 8, 7 / 6, 23 / 24)),  # Gregory's end correction
+    "half": WallRule("2EI/l", (1 / 2,)),  # the literature's spring, Eq. (1) with a rigid neighbour
+    "full": WallRule("EI/l", (1.0,)),  # the spring of an inner joint, a frequent mistake
+    "welded": WallRule("half a link welded", first=0.5),  # midpoint rule, a whole joint EI/l behind the half link
     "third-order": WallRule("5/12, 13/12", (5 / 12, 13 / 12)),
     # slightly better than Gregory's for low modes
     "five-joint": WallRule("five weights", (95 / 288, 317 / 240, 23 / 30, 793 / 720, 157 / 160)),
@@ -69,37 +68,27 @@ def wall_label(name: str) -> str:
 if TYPE_CHECKING:
     Wall: TypeAlias = str
 else:  # a type checker knows no table
-    Wall = Annotated[
-        Literal[tuple(name for name, rule in WALLS.items() if not rule.fault)],
-        Meta(description="joints at a clamped end; half: k = 2EI/l"),
-    ]
+    _NAMES = tuple(name for name, rule in WALLS.items() if not rule.fault)
+    Wall = Annotated[Literal[_NAMES], Meta(description="joints at a clamped end; half: k = 2EI/l")]
 
 Theory = Annotated[Literal["euler-bernoulli", "rayleigh", "timoshenko"], Meta(description="beam theory")]
 THEORIES: tuple[str, ...] = get_args(get_args(Theory)[0])
-"""Beam theory. rayleigh: euler-bernoulli with rotary inertia. timoshenko: rayleigh with shear."""
+"""rayleigh: euler-bernoulli with rotary inertia. timoshenko: rayleigh with shear."""
 
 Joints = Annotated[Literal["series", "printed", "tensioned"], Meta(description="joint stiffness, Eq. (1)")]
-"""Stiffness of a joint. series: the paper's Eq. (1) corrected, two half links in series. printed: Eq. (1) with its
+"""series: the paper's Eq. (1) corrected, two half links in series. printed: Eq. (1) with its
 indices as printed. tensioned: series with corrections of axial force (less T l/12) and rotary inertia: order 4 under
 axial force and in Rayleigh and Timoshenko theory."""
 
-Attachment = Annotated[
-    Literal["reciprocal", "lever"], Meta(description="distribution of point masses and springs on segments")
-]
-"""Distribution of a point mass or spring on a chain. reciprocal: over four joints, order 4. lever: to its rigid link,
-order 1 or 2."""
+Rule = Literal["reciprocal", "lever"]
+Attachment = Annotated[Rule, Meta(description="distribution of point masses and springs on segments")]
+"""reciprocal: over four joints, order 4. lever: to the rigid link, order 1 or 2."""
 
-Load = Annotated[Literal["reciprocal", "lever"], Meta(description="segment: distribution of a force over joints")]
-"""Distribution of a point force on a chain. reciprocal: over four joints, order 4. lever: over the two joints of its
-link, order 2."""
+Load = Annotated[Rule, Meta(description="segment: distribution of a force over joints")]
+"""reciprocal: over four joints, order 4. lever: over the two joints of the link, order 2."""
 
 Reading = Annotated[Literal["corrected", "raw", "links"], Meta(description="segment: interpolation between joints")]
-"""Interpolation between joints. corrected: spline through y + delta^2 y / 12. raw: spline through y. links: straight
-links."""
-
-
-Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
-Dashpot = Annotated[float, unit("N m s", ge=0, le=1e50), Meta(description="segment: dashpot of every joint, N m s")]
+"""corrected: spline through y + delta^2 y / 12. raw: spline through y. links: straight links."""
 
 
 class ModelSettings(msgspec.Struct, frozen=True, kw_only=True):
@@ -107,7 +96,7 @@ class ModelSettings(msgspec.Struct, frozen=True, kw_only=True):
 
     wall: Wall = "gregory"
     joints: Joints = "series"
-    grading: Grading = 1.0
+    grading: Annotated[float, Meta(gt=0, description="length of a section's last part over its first")] = 1.0
     theory: Theory = "euler-bernoulli"
     attachment: Attachment = "reciprocal"
 
@@ -117,7 +106,7 @@ class Settings(ModelSettings, frozen=True, kw_only=True):
 
     load: Load = "reciprocal"
     reading: Reading = "corrected"
-    joint_dashpot: Dashpot = 0.0
+    joint_dashpot: Annotated[float, unit("N m s", ge=0, le=1e50), Meta(description="segment: at every joint")] = 0.0
 
 
 DEFAULT = Settings()
@@ -132,8 +121,6 @@ def check_setting(name: str, value: object) -> None:
     elif name in _TYPES:
         convert(python_scalar(value), _TYPES[name], name)
 
-
-# --- Named choices of other values ---
 
 Shape = Literal["rectangle", "round", "tube"]
 """Cross-section. rectangle: width and thickness. round: diameter. tube: diameter and wall_thickness."""

@@ -111,12 +111,9 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
     from verify.engines.writers import data, table
     from verify.report.result import Column, Result, Table
 
-    walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
-    others = {
-        f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space)
-        for wall in walls
-        if wall != chain.wall
-    }
+    held, n = "clamped" in chain.beam.supports, chain.count
+    walls = [name for name in COMPARED if held and name != chain.wall]
+    others = {f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls}
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
     rows, margins = list[tuple[object, ...]](), beam_margins(SolutionCache(chain.beam), (), mode=mode)
@@ -130,7 +127,7 @@ def _result(chain: "RigidChain", mode: int, *, brief: bool) -> "Result":
         name = f"discretisation of {n} links in {axis}"
         margins += [Margin(name=name, size=abs(errors[-1]), where=f"at mode {mode}", remedy="give more links",
                            condition=f"{n} links are enough in {axis}")]  # fmt: skip
-    rule = f", {wall_label(chain.wall)}" if walls else ""
+    rule = f", {wall_label(chain.wall)}" if held else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.beam.mass or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")

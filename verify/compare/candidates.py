@@ -12,12 +12,11 @@ from verify.arrays import Array
 from verify.compare.discrete import STEPS, DiscreteBeam
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
+from verify.segments.orders import order_of
 from verify.settings import DEFAULT, THEORIES, WALLS, wall_label
 
 EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
 EULER = "euler-bernoulli"
-FINE = 60
-"""Number of segments for which orders are determined."""
 LABELS = {
     EXACT: "exact beam",
     "links": "rigid links",
@@ -31,15 +30,9 @@ LABELS = {
     "linear": "linear Timoshenko elements, consistent mass",
     "linear-lumped": "linear Timoshenko elements, lumped mass",
     "printed": "Eq. (1) as printed",
-    "centre": "equal links by the section at their centre",
-    "outboard": "joints by EI/l of the outboard link",
-    "inboard": "joints by EI/l of the inboard link",
-    "mean": "joints by the mean EI",
     "tensioned": "joints corrected for tension",
     "lever": "attachments on their rigid link",
-    "rayleigh": "Rayleigh",
-    "timoshenko": "Timoshenko",
-}
+} | STEPS
 """Labels of models, mass, joints, attachments and theories; those of walls are in `settings`."""
 
 
@@ -66,8 +59,9 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     def label(self) -> str:
         """Name in tables."""
         wall = [wall_label(self.wall)] if self.wall else []
-        rules = [LABELS[w] for w in (self.joints, self.attachment, self.theory) if w in LABELS]
-        return ", ".join([LABELS[self.mass or self.model], *wall, *rules])
+        rules = [LABELS[rule] for rule in (self.joints, self.attachment) if rule in LABELS]
+        theory = [self.theory.capitalize()] if self.theory != EULER else []
+        return ", ".join([LABELS[self.mass or self.model], *wall, *rules, *theory])
 
     @property
     def packaged(self) -> bool:
@@ -85,10 +79,9 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
         if self.joints in STEPS:
             return None if self.joints == "centre" else 1
-        rules = {"joints": self.joints, "theory": EULER if self.mass == "rod" else self.theory}
-        known = MODELS[CHAIN].build(beam, FINE, **rules, attachment=self.attachment).expected_order()
-        highest = min(WALLS[self.wall].order if self.wall else 4, 4 if self.mass == "links" else 2)
-        return None if known is None else min(known, highest)
+        rules = {"wall": self.wall or DEFAULT.wall, "joints": self.joints, "attachment": self.attachment}
+        order = order_of(beam, **rules, grading=1.0, theory=EULER if self.mass == "rod" else self.theory)
+        return order if order is None or self.mass == "links" else min(order, 2)
 
 
 def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
@@ -132,8 +125,8 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
     """First elastic frequencies of a candidate, (n_modes or fewer,), Hz; cached, read-only. Raises InputError."""
     if candidate.packaged:
-        rules = {name: getattr(candidate, name) for name in ("wall", "joints", "attachment", "theory")}
-        rules = {name: rule for name, rule in rules.items() if rule not in (None, "series", "reciprocal", EULER)}
+        chosen = {name: getattr(candidate, name, None) for name in MODELS[candidate.model].settings()}
+        rules = {name: rule for name, rule in chosen.items() if rule is not None}
         if count is not None and count < MODELS[candidate.model].fewest:
             return np.empty(0)
         model = MODELS[candidate.model].build(beam, count, **rules)

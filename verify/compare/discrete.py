@@ -15,9 +15,13 @@ from verify.linear.mesh import divide
 from verify.linear.system import StructuralSystem
 from verify.problem.beam import Beam
 
-STEPS = ("centre", "outboard", "inboard", "mean")
-"""Joint rules of equal links with the section at their centre: two half links, EI/l of the link beyond the joint or in
-front of it, mean EI."""
+STEPS = {
+    "centre": "equal links by the section at their centre",
+    "outboard": "joints by EI/l of the outboard link",
+    "inboard": "joints by EI/l of the inboard link",
+    "mean": "joints by the mean EI",
+}
+"""Joint rules of equal links with the section at their centre, and their labels."""
 MASSLESS = 1e-12
 """Rotary inertia over m l^2 in place of zero: negligible, keeps the mass matrix regular."""
 NODE_INERTIA = {"lumped": MASSLESS, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
@@ -56,8 +60,8 @@ class DiscreteBeam:
     def chain_hz(self, n_modes: int, mass: str, wall: str) -> Array:
         """Rigid links with joint springs, Hz: their mass as 'links' with m l^2/12, as 'points', or at the 'joints'."""
         free, compliances, turn = self.free.copy(), self._compliances(wall), self.rotary / self.lengths**2
-        for beside, support in zip((1, -2), self.beam.supports, strict=True):
-            free[beside] &= not (support == "clamped" and wall == "rigid")
+        for beside, end in ((1, 0), (-2, -1)):
+            free[beside] &= compliances[end] > 0.0
         if mass == "joints":
             own, coupled = 0.5 * self.masses + turn, -turn
         else:
@@ -76,8 +80,7 @@ class DiscreteBeam:
         from scipy.sparse import block_array, diags_array, eye_array
 
         compliances, turning = self._compliances(wall), np.ones(self.n, dtype=bool)
-        for end, support in zip((0, -1), self.beam.supports, strict=True):
-            turning[end] &= not (support == "clamped" and wall == "rigid")
+        turning[[0, -1]] &= compliances[[0, -1]] > 0.0
         jointed = np.isfinite(compliances) & (compliances > 0.0)
         chord = [self.slopes[:, self.free], -eye_array(self.n).tocsr()[:, turning]]
         strain = block_array([[None, self.jumps[jointed][:, turning]], chord]).tocsr()

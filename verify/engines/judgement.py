@@ -102,17 +102,8 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
     text = rule if support == "clamped" else f"{support} end"
-    return Judged(
-        line,
-        chain(k),
-        chain(springs),
-        text,
-        stiffness,
-        springs,
-        wall + joints + links,
-        links,
-        advice * (held and bool(wall)),
-    )
+    faults, advice = wall + joints + links, advice * (held and bool(wall))
+    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, links, advice)
 
 
 def _faults(line: Line, expected: Array, bodies: float, spacing: int, ratio: float) -> tuple[list[str], list[str]]:

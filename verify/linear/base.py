@@ -50,8 +50,6 @@ class BeamModel(ABC):
     """Package that the model needs besides numpy and scipy."""
     lines: ClassVar[tuple[str, ...]] = ("spline",)
     """Contact lines on which a slider can run."""
-    modal_settings: ClassVar[tuple[str, ...]] = ()
-    """Settings of `analysis.variants` on which the frequencies depend."""
     beam: Beam
     theory: str = DEFAULT.theory
 
@@ -61,6 +59,25 @@ class BeamModel(ABC):
         for verb in VERBS:
             if verb in vars(cls):
                 setattr(cls, verb, one_blas_thread()(vars(cls)[verb]))
+
+    def __post_init__(self) -> None:
+        """Raise InputError for an unknown setting, and for missing section properties of the theory."""
+        check_type("beam", self.beam, Beam)
+        for name in self.settings():
+            check_setting(name, getattr(self, name))
+        if self.theory != "euler-bernoulli" and self.beam.tension:
+            raise InputError(
+                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
+                "leave the axial force out or choose euler-bernoulli"
+            )
+        for i, piece in enumerate(self.beam.pieces):
+            for figure in _NEEDS.get(self.theory, ()):
+                if getattr(piece, figure) is None:
+                    where = f"beam.section[{i}]" if self.beam.section else "beam"
+                    raise InputError(
+                        f"{where}.{figure} is missing: theory = {self.theory!r} needs it, give it, or a shape with its "
+                        "sizes, youngs_modulus and density"
+                    )
 
     @classmethod
     def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
@@ -160,25 +177,6 @@ class BeamModel(ABC):
                 f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
                 "modes, raise count"
             )
-
-    def check_settings(self) -> None:
-        """Raise InputError for an unknown setting, and for missing section properties of the theory."""
-        check_type("beam", self.beam, Beam)
-        for name in self.settings():
-            check_setting(name, getattr(self, name))
-        if self.theory != "euler-bernoulli" and self.beam.tension:
-            raise InputError(
-                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
-                "leave the axial force out or choose euler-bernoulli"
-            )
-        for i, piece in enumerate(self.beam.pieces):
-            for figure in _NEEDS.get(self.theory, ()):
-                if getattr(piece, figure) is None:
-                    where = f"beam.section[{i}]" if self.beam.section else "beam"
-                    raise InputError(
-                        f"{where}.{figure} is missing: theory = {self.theory!r} needs it, give it, or a shape with its "
-                        "sizes, youngs_modulus and density"
-                    )
 
     def check_stationed(
         self,

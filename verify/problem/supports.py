@@ -1,13 +1,11 @@
 """The four supports of a beam's end by the motions that they prevent: deflection w, rotation w'."""
 
 from collections.abc import Iterable, Mapping
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 from verify.errors import InputError
 
 Support = Literal["pinned", "clamped", "free", "guided"]
-SUPPORTS: tuple[str, ...] = get_args(Support)
-"""Support of an end of a beam. pinned: w = 0. clamped: w = w' = 0. free: no constraint. guided: w' = 0."""
 
 
 class Fixity(NamedTuple):
@@ -17,12 +15,14 @@ class Fixity(NamedTuple):
     rotation: bool
 
 
-FIXED = {
+FIXED: dict[str, Fixity] = {
     "pinned": Fixity(deflection=True, rotation=False),
     "clamped": Fixity(deflection=True, rotation=True),
     "guided": Fixity(deflection=False, rotation=True),
     "free": Fixity(deflection=False, rotation=False),
 }
+"""All supports, as an end has two motions: an elastic or a loaded end is one of them with a spring, mass or device."""
+SUPPORTS = tuple(FIXED)
 
 
 def check_free(

@@ -10,7 +10,6 @@ from msgspec.structs import replace
 from verify import settings
 from verify.analysis.solution_cache import Settings
 from verify.errors import InputError, near_name
-from verify.linear import registry
 from verify.linear.registry import MEAN, MODELS
 from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import MODEL_NAME, Place, Scene
@@ -67,7 +66,7 @@ Mass = Annotated[float, unit("kg"), Meta(gt=0, description="mass, kg")]
 def check_count(model: str, count: int | None) -> None:
     """Raise InputError for a discrete model without `count`, or the exact beam with `count`."""
     if model != MEAN:
-        registry.check_count(model, count)
+        MODELS.named(model).check_count(count)
     elif count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 

@@ -12,15 +12,13 @@ from verify.settings import WALLS
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
 
-_THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
-_DERIVED = {"joints": ("series", "printed", "tensioned"), "attachment": ("reciprocal", "lever"), "theory": _THEORIES}
+_DERIVED = {"series", "printed", "tensioned", "reciprocal", "lever", "euler-bernoulli", "rayleigh", "timoshenko"}
 """Choices for which the orders are derived; that of a wall rule follows from its weights."""
 
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:
     """Order of the frequencies of a chain; None where it is not derived or depends on the number of links."""
-    chosen = {"joints": joints, "attachment": attachment, "theory": theory}
-    if any(value not in _DERIVED[name] for name, value in chosen.items()):
+    if not {joints, attachment, theory} <= _DERIVED:
         return None
     graded, lever = grading != 1.0, attachment == "lever"
     thick, sheared = theory != "euler-bernoulli", theory == "timoshenko"

@@ -10,11 +10,6 @@ from verify.problem.supports import FIXED
 from verify.settings import WALLS
 
 
-def _corrections(wall: str) -> Array:
-    """Corrections of the weights 1 from a clamped end on, in l/EI."""
-    return np.array(WALLS[wall].weights) - 1.0
-
-
 def wall_factors(
     supports: tuple[str, str], n_segments: int, wall: str, elastic: tuple[bool, bool] = (False, False)
 ) -> Array:
@@ -26,7 +21,7 @@ def wall_factors(
     factors = np.ones(n_segments + 1)
     for end, support, turns in zip((0, n_segments), supports, elastic, strict=True):
         if support == "clamped" or turns:
-            corrections = _corrections(wall)[: n_segments + 1]
+            corrections = np.array(WALLS[wall].corrections[: n_segments + 1])
             factors[abs(end - np.arange(len(corrections)))] += corrections
         else:
             factors[end] = np.inf if not FIXED[support].rotation else factors[end] - 0.5
@@ -39,7 +34,7 @@ def tension_excess(wall: str) -> float:
     Corrections a_k of the joints rotate link i by -l kappa sum_{k>i} a_k from the smooth line; the axial force acts on
     the squares of these rotations.
     """
-    return float(12.0 * (np.cumsum(_corrections(wall)[:0:-1]) ** 2).sum())
+    return float(12.0 * (np.cumsum(WALLS[wall].corrections[:0:-1]) ** 2).sum())
 
 
 def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> Array:
@@ -48,7 +43,7 @@ def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> A
     Corrections a_k of the joints move joint j from the smooth line by l^2 kappa sum_{k>j} a_k (k - j), and scale its
     angle by 1 + a_j.
     """
-    factors, a = np.ones(n_segments + 1), _corrections(wall)
+    factors, a = np.ones(n_segments + 1), np.array(WALLS[wall].corrections)
     for end, turns in zip((0, n_segments), elastic, strict=True):
         for j in range(1, min(len(a), n_segments + 1) * turns):
             factors[abs(end - j)] *= (1.0 - 12.0 * a[j + 1 :] @ np.arange(1, len(a) - j)) / (1.0 + a[j])
