@@ -86,6 +86,7 @@ for name, beam, mode, middle in (
     ("tip body", on("CF", **TIP), 1, 0.0),
     ("elastic clamp", on("FF", spring=spring(ABSTRACT, 0.0, 300.0, 5.0)), 3, -0.05),
     ("mass at a guided end", on("GP", mass=mass(ABSTRACT, 0.0, 0.4)), 3, 0.0),
+    ("spring at a guided end", on("GF", spring=spring(ABSTRACT, 0.0, 20.0)), 2, 0.0),
     ("spring at a free end", on("PF", spring=spring(ABSTRACT, 1.0, 20.0)), 2, 0.0),
     ("mass at a free end", on("FF", mass=mass(ABSTRACT, 0.0, 0.4)), 1, 0.0),
     ("rotational spring at a pin", on("PP", spring=spring(ABSTRACT, 0.0, rotational=5.0)), 1, -0.15),

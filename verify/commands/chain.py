@@ -7,7 +7,7 @@ import click
 
 from verify.commands.shared import GATE_FAILED, BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
-from verify.settings import DEFAULT, wall_label
+from verify.settings import DEFAULT, WALLS, wall_label
 
 if TYPE_CHECKING:
     from verify.engines.description import RigidChain
@@ -20,6 +20,7 @@ FIRST = 4
 """Joints that the terminal always shows."""
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
+RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
 
 
 @click.command(cls=BeamCommand)
@@ -28,7 +29,9 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
 @click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
 @click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
-@click.option("--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help="Joints at a clamped end.")
+@click.option(
+    "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
+)
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
