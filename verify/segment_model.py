@@ -78,8 +78,8 @@ class SegmentModel(ChainStructure):
     """c of a dashpot at every joint, N m s, in harmonic motion."""
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            object.__setattr__(self, one.name, python_scalar(getattr(self, one.name)))
+        for field in fields(self):
+            object.__setattr__(self, field.name, python_scalar(getattr(self, field.name)))
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         super().__post_init__()
         check_division(self.beam, self.n_segments, self.grading)
@@ -244,8 +244,8 @@ class SegmentModel(ChainStructure):
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints."""
-        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.base_section, 1.0 + 1j * self.beam.loss_factor
-        rigidity, inertia = own.shear_stiffness or 0.0, own.rotary_inertia or 0.0
+        omega, section, loss = 2.0 * pi * frequency_hz, self.beam.base_section, 1.0 + 1j * self.beam.loss_factor
+        rigidity, inertia = section.shear_stiffness or 0.0, section.rotary_inertia or 0.0
         k = phase(
             (omega / self._omega_unit) ** 2,
             loss + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness,

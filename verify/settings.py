@@ -151,15 +151,13 @@ Kinematics = Literal["tangential", "following"]
 """Slider kinematics. tangential: m dv/dt = F, dx/dt = v. following: exact motion on the moving surface."""
 
 NormalChoice = Literal["bilateral", "massless"]
-"""Normal force of a two-way coupled slider on the beam. bilateral: weight and inertia. massless: none, as in the
-paper."""
+"""Normal force of a two-way slider on the beam. bilateral: weight and inertia. massless: none, as in the paper."""
 
 Face = Literal["upper", "lower"]
 """Face of the beam on which a foot rests."""
 
 Start = Literal["rest", "steady"]
-"""Initial state of a motion. rest: at rest, with the static deflection under a slider. steady: steady state under the
-drive."""
+"""Initial state. rest: at rest, with the static deflection under a slider. steady: steady state under the drive."""
 
 DriveKind = Literal["force", "moment", "displacement", "voltage", "current"]
 DRIVE_UNITS = {"force": "N", "moment": "N m", "displacement": "m", "voltage": "V", "current": "A"}

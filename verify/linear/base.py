@@ -101,7 +101,7 @@ class BeamModel(ABC):
     @classmethod
     def settings(cls) -> tuple[str, ...]:
         """Names of the settings: the fields after the beam and the number of parts."""
-        return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
+        return tuple(field.name for field in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:

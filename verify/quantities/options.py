@@ -55,9 +55,7 @@ ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio o
 Wall = settings.Wall
 TimeTheory = Annotated[settings.Theory, Meta(description="beam theory; in time Euler-Bernoulli alone")]
 SoftStart = Annotated[float, Meta(ge=0, description="growth of the forces, in drive periods; default: the scene's")]
-ForceAmplitude = Annotated[
-    float, unit("N"), Meta(ge=0, description="amplitude of every force, N; default: the scene's")
-]
+ForceAmplitude = Annotated[float, unit("N"), Meta(ge=0, description="amplitude of all forces, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
 Mass = Annotated[float, unit("kg"), Meta(gt=0, description="mass, kg")]

@@ -55,8 +55,8 @@ def _steps(beam: "Beam", *figures: str) -> list[float]:
     places = accumulate(piece.length for piece in beam.pieces)
     return [
         at
-        for at, (one, other) in zip(places, pairwise(beam.pieces), strict=False)
-        if not figures or any(getattr(one, name) != getattr(other, name) for name in figures)
+        for at, (left, right) in zip(places, pairwise(beam.pieces), strict=False)
+        if not figures or any(getattr(left, name) != getattr(right, name) for name in figures)
     ]
 
 

@@ -177,13 +177,13 @@ class ChainStructure(DiscreteModel):
             return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
         # strain rows over (link rotations, unknowns v), and their stiffnesses
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
-        own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
+        unknowns = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
         strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
-        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
+        strains.append((unknowns[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
         bound = 0.0
         if beam.foundation:
             ground = self._foundation * lengths
-            strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
+            strains += [(motions.middles @ unknowns, ground), (links, ground * lengths**2 / 12.0)]
             if beam.tension >= 0.0:
                 bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
         if beam.tension:
@@ -212,8 +212,8 @@ class ChainStructure(DiscreteModel):
     @cached_property
     def _beam_fraction(self) -> Array:
         """Fraction of each joint's angle that is in the beam and not in a spring behind its end, (N + 1,)."""
-        own, whole = self._corrected_compliances, self.chain.compliances
-        return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
+        beam, whole = self._corrected_compliances, self.chain.compliances
+        return np.divide(beam, whole, out=np.ones(len(beam)), where=np.isfinite(whole))
 
     def _rigid(self, across: Any) -> Array:
         """Rigid-body modes, (n, 0 to 2)."""
