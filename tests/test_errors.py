@@ -27,7 +27,8 @@ from verify import (
     load_scene,
     simulate,
 )
-from verify.dynamics.belt import creep_speed, stick_slip_times
+from verify.cases.belt import stick_slip_times
+from verify.cases.creep import creep_speed
 from verify.errors import NAMES, SENTENCE, near_name, one_line, shown
 
 TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}

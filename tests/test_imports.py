@@ -9,7 +9,7 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "verify"
 MODELS = {"exact", "elements", "segments"}
-NUMERICS = MODELS | {"problem", "linear", "waves", "dynamics", "chain", "motor", "control", "analysis"}
+NUMERICS = MODELS | {"problem", "linear", "waves", "dynamics", "chain", "motor", "control", "analysis", "cases"}
 DOORS = {"scene", "quantities", "studies", "report", "io", "commands", "compare", "bench", "engines", "stress", "cli"}
 
 

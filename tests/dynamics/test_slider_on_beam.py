@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from verify import Excitation, Keep, PrescribedSlider, Step, simulate
+from verify.cases.slider_on_wave import terminal_speed
 from verify.dynamics.result import Motion
 from verify.errors import InputError
-from verify.motor.travelling_wave import terminal_speed
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
 from verify.problem.slider import Slider, changed
@@ -256,7 +256,7 @@ def test_terminal_speed_on_a_pure_wave_equals_its_ode(kinematics, slope, amplitu
             return [v, friction]
         return [v - slope_w * rise, rise * (twist + bend * v) - 9.81 * slope_w + friction]
 
-    found = terminal_speed(PAPER, slider, amplitude, 4276.0)
+    found = terminal_speed(slider, amplitude)
     period = 2 * np.pi / (omega - k * found)
 
     def after(v):

@@ -5,7 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify import SegmentModel
-from verify.chain.benchmarks import linear_deflection
+from verify.chain.departure import linear_deflection
 from verify.chain.motion import step_limit
 from verify.chain.system import build_system
 from verify.engines import ENGINES, chain_of, missing

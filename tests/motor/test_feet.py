@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from verify import Contact, Excitation, Foot, Keep, Slider, simulate
 from verify.analysis.margins import sag_margins
 from verify.analysis.solution_cache import SolutionCache
-from verify.exact.contact import layer
+from verify.cases import layer
 
 HEIGHT = 1e-8
 """Of the wave, metres: w_t w' is 2e-5 of the speed of its crests."""

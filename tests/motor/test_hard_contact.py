@@ -8,8 +8,8 @@ import reference.motor as by
 from driven_strip import HALF, MIDDLE, OMEGA, PERIOD, drive, on_strip
 from msgspec.structs import replace
 
+from verify.cases.landing import landing_phase
 from verify.contact.state import LANDS, LEAVES
-from verify.exact.contact import impact
 from verify.problem.slider import Contact, Slider
 
 GRAVITY, MASS = 9.81e-3, 2.3e-3
@@ -181,7 +181,7 @@ def test_a_point_kept_at_its_place_lands_once_a_period_at_any_speed(speed, steps
     ratio, amplitude = 1.1, 4.1e-7
     slider = point(Contact(), gravity=amplitude * OMEGA**2 / ratio)
     run = on_strip(slider, amplitude, periods=20, steps=steps, samples=21, speed=speed, fixed_position=True)
-    share = 1.0 - (impact.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
+    share = 1.0 - (landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
     assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
     assert run.contact_fraction[2:].mean() == pytest.approx(share, abs=1e-5)
     assert run.energy.slope_work == 0.0

@@ -11,11 +11,12 @@ from scipy.integrate import solve_ivp
 
 from verify import Beam, Contact, Excitation, Foot, InputError, PointForce, Slider, simulate
 from verify.analysis.solution_cache import SolutionCache
-from verify.exact.contact import layer
+from verify.cases import layer
+from verify.cases.foot_on_wave import AMPLITUDE, foot_on_wave
+from verify.cases.wave import CREST
 from verify.motor.curves import no_load, reversal, stop, transient
 from verify.motor.periodic_orbit import periodic_orbit
 from verify.motor.steady_state import MotorCase, crest_speed, steady_state
-from verify.motor.travelling_wave import foot_on_wave
 from verify.quantities.base import evaluate
 from verify.quantities.motor import FreeRun
 from verify.scene.load import load_scene, scene_from
@@ -68,11 +69,10 @@ def test_friction_of_two_points_reverses_within_the_step(phi, ratio):
     """A step is 2/61 = 0.033 of the force."""
     wrong = []
     for steps in (61, 488):
-        given = {"speed_ratio": ratio, "contact_half_angle": phi, "points": 2, "steps_per_period": steps, "mu": MU}
-        means, crests = foot_on_wave(STRIP, HERTZ, **given)
-        power = -means.force * ratio * crests
-        assert means.surface_power == pytest.approx(power + means.friction_power, rel=1e-9)
-        wrong.append(means.force / (MU * means.normal_force) + layer.force(phi, ratio))
+        last = foot_on_wave(phi, ratio, 0.0, 2, steps)
+        work = -last["friction"] * ratio * CREST * AMPLITUDE / HERTZ
+        assert last["tangential_work"] == pytest.approx(work + last["friction_loss"], rel=1e-9)
+        wrong.append(last["friction"] / (MU * last["normal_force"]) + layer.force(phi, ratio))
     assert abs(wrong[0]) < 6e-3
     assert abs(wrong[1]) < 6e-5
 

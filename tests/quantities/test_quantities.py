@@ -73,7 +73,6 @@ SCENES = {
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
 TIME, HELD = {"count": 12}, {"count": 12, "steps_per_period": 23}
-BELT = {"mass": 0.31, "stiffness": 47.0, "static": 1.1, "kinetic": 0.7, "speed": 0.13}
 LAYER = {"contact_half_angle": 1.1, "speed_ratio": 0.71}
 # fmt: off
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -107,7 +106,6 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"slider.{name}": ("driven", TIME) for name in ("mean_friction", "mean_surface_speed", "imbalance")},
     "slider.order": ("driven", {"count": 12, "steps": [2e-5, 1e-5, 5e-6]}),
     "slider.deflection": ("driven", {**TIME, "x": 0.31}), "slider.energy": ("driven", {**TIME, "of": "friction_loss"}),
-    "slider.terminal_speed": ("driven", {"amplitude": 1e-6, "slope": 310.0, "mu": 0.23}),
     "motion.reflection": ("driven", {**TIME, "time": 4e-3, "window": [0.2, 0.5], "start": "steady"}),
     **{f"motor.{name}": ("motor", HELD) for name in ("stall_force", "normal_mean", "contact_fraction", "stick_fraction")},
     "motor.multiplier": ("motor", HELD),
@@ -118,30 +116,21 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"control.{n}": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7, "duration": 0.9}) for n in (
         "overshoot", "settling_time")},
     "study.value": ("decay", {"study": "identify", "row": "mu", "column": "sd"}),
-    "chain.cantilever_tip": ("bare", {"segments": 7, "load": 1.7}),
-    "chain.rollup_gap": ("bare", {"segments": 7, "wall": "gregory"}),
-    "chain.hanging_frequency": ("bare", {"segments": 7, "mode": 2}),
-    "chain.rotating_frequency": ("bare", {"segments": 7, "mode": 2, "speed": 1.3}),
-    "chain.large_amplitude_frequency": ("bare", {"segments": 6, "amplitude": 0.9}),
-    "chain.energy_drift": ("bare", {"segments": 5, "step": 2e-5}), "chain.imbalance": ("bare", {"segments": 4}),
     "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),
     "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
     "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),
     **{f"chain.slider_{n}": ("undamped", {"segments": 5, "coupling": "one-way"}) for n in ("displacement", "mean_speed", "imbalance")},
-    "friction.creep_speed": ("bare", {"mu": 0.23, "slope": 310.0, "acceleration": 1.1}),
-    "friction.belt_stick_time": ("bare", BELT), "friction.belt_slip_time": ("bare", BELT),
     "slider.winkler_speed_ratio": ("bare", {"contact_half_angle": 1.1}), "slider.layer_efficiency": ("bare", LAYER),
-    "friction.coulomb_decrement": ("bare", {"mass": 0.31, "stiffness": 47.0, "force": 0.7}),
     "slider.layer_force": ("bare", {**LAYER, "epsilon": 0.3}),
     **{f"actuator.{name}": ("stack", {}) for name in ("resonance", "antiresonance", "coupling", "branch")},
     "actuator.impedance": ("stack", {"frequency_hz": 7e4}),
     "identify.interval": ("decay", {"parameter": "slope"}),
     "identify.coverage": ("decay", {"parameter": "mu", "repeats": 100}),
-    "contact.landing_phase": ("bare", {"acceleration_ratio": 1.7}), "contact.restitution": ("bare", {"damping_ratio": 0.2}),
+    "case.value": ("bare", {"case": "landing"}), "case.error": ("bare", {"case": "elastica-shortening", "count": 9}),
+    "case.order": ("bare", {"case": "elastica-deflection", "counts": [8, 16, 32]}),
+    "contact.restitution": ("bare", {"damping_ratio": 0.2}),
     **{f"shunt.{n}": ("bare", {"coupling": 0.17, "circuit": "parallel"}) for n in ("peak", "optimum")},
     **{f"shunt.{n}": ("actuated", {"position": 0.083}) for n in ("absorber", "reflection")},
-    "slider.wave_force": ("driven", {**LAYER, "steps_per_period": 32}),
-    "slider.wave_force_order": ("driven", {**LAYER, "counts": [16, 32, 64], "steps_per_period": 32}),
 }
 # fmt: on
 CACHES = {name: SolutionCache(scene.beam) for name, scene in SCENES.items()}
@@ -287,6 +276,8 @@ def test_words_are_read_by_type():
         ("motor.stall_force", "driven", {}, "slider.contact is missing: add"),
         ("motor.stall_force", "motor", {**HELD, "theory": "rayleigh"}, "a motor has Euler-Bernoulli theory alone"),
         ("chain.transient_deflection", "bare", {}, "drive.force is missing: add"),
+        ("case.error", "bare", {"case": "elastica"}, "case = 'elastica' is not known: known are"),
+        ("case.error", "bare", {"case": "roll-up-gregory", "count": 7}, "count = 7: the size of case .* is fixed"),
         ("drive.quarter_wavelength", "bare", {}, "frequency_hz is missing"),
         ("slider.displacement", "motor", {"kinematics": "following", "time": 1e-3}, "slider.kinematics = 'following'"),
         ("mode.frequency", "device", {"count": 14}, "does not model drive.device"),

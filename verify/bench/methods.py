@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.bench.work_precision import Method, Question
-from verify.chain.benchmarks import departure, linear_deflection
+from verify.chain.departure import DrivenChain, linear_deflection
 from verify.chain.kinematics import at_rest
 from verify.chain.motion import simulate as simulate_chain
 from verify.chain.motion import step_limit
@@ -295,7 +295,8 @@ def engines_slider(problem: Problem, adapters: dict[str, Any], count: int, absen
         Method("segments, modes known", own, (16, 32, 64, 128, 256), "steps / period", again=True),
         *map(method, adapters),
     ]
-    gap = departure(beam, problem.forces, hertz, end, LINKS, x=one.initial_position(beam)).rms
+    linked = DrivenChain(beam=beam, forces=problem.forces, frequency_hz=hertz, count=LINKS)
+    _, gap = linked.departure(end, one.initial_position(beam))
     title = f"displacement, one-way, rms over time, {count} links, {problem.name}{absent}"
     return Question(f"engines-slider-{count}", title, "linear chain, 2048 steps a period", gap, error, methods)
 

@@ -17,11 +17,11 @@ from verify.contact.response import NORMAL, TANGENTIAL, add_response, product
 from verify.contact.solver import solve
 from verify.contact.state import SPRING, Bodies, Kind, Response
 from verify.dynamics.columns import set_mean_rates
-from verify.dynamics.integrator import begin_bodies, close_step
+from verify.dynamics.integrator import are_finite, begin_bodies, close_step
 from verify.dynamics.recording import sample
 from verify.dynamics.shapes import shape_of
 from verify.dynamics.state import DONE, END, HALF, MIDDLE, NOT_FINITE, OFF_PIECES, RATE, START, VALUE, Journal, Surface
-from verify.dynamics.surface import SIMPSON, evaluate_surface, find_pieces
+from verify.dynamics.surface import SIMPSON, evaluate_surface, find_pieces, set_start_speeds
 from verify.jit import inline, jit
 
 CORRECTIONS = 20
@@ -92,22 +92,28 @@ def read_links(when: int, y: Array, chain: Chain) -> None:
                 factors[when, VALUE, column], factors[when, RATE, column] = y[i + 2] - y[i], y[n + i + 2] - y[n + i]
 
 
+@inline
+def axial_speed(when: int, i: int, surface: Surface, bodies: Bodies) -> float:
+    """Speed of the chain along x under point i at an instant of the step, m/s."""
+    m, rates, contact = surface.factors.shape[2] // 2, surface.factors[when, RATE], bodies.contacts[i]
+    piece, share = contact.piece, contact.xi_point_end if when == END else contact.xi_point
+    if when == START:
+        x = bodies.sliders[bodies.points[i].slider].x + bodies.points[i].offset
+        share = (x - surface.edges[piece]) / (surface.edges[piece + 1] - surface.edges[piece])
+    along = share * rates[m + piece]
+    for j in range(piece):
+        along += rates[m + j]
+    return float(along)
+
+
 @jit(no_cpython_wrapper=True)
 def evaluate_chain_surface(when: int, step: int, dt: float, kind: Kind, surface: Surface, bodies: Bodies) -> None:
     """Evaluate the surface under every point (`evaluate_surface`), with the speed of its material along x."""
     for j in range(surface.stamps.size):
         surface.stamps[j] = -1
     evaluate_surface(when, 4 * step + when, dt, kind, surface, bodies)
-    m, rates = surface.factors.shape[2] // 2, surface.factors[when, RATE]
     for i in range(bodies.points.shape[0]):
-        point, contact = bodies.points[i], bodies.contacts[i]
-        piece, share = contact.piece, contact.xi_point_end if when == END else contact.xi_point
-        if when == START:
-            x = bodies.sliders[point.slider].x + point.offset
-            share = (x - surface.edges[piece]) / (surface.edges[piece + 1] - surface.edges[piece])
-        along = share * rates[m + piece]
-        for j in range(piece):
-            along += rates[m + j]
+        contact, along = bodies.contacts[i], axial_speed(when, i, surface, bodies)
         if kind.normal_law == SPRING:
             contact.mean += along
             contact.surface_delta_v += along
@@ -230,7 +236,7 @@ def step_coupled(
 ) -> bool:
     """A step in which forces and motion of the chain agree; whether its marches succeed."""
     directions, balance, shapes = 2 if kind.normal_two_way else 1, journal.balance[0], response.shapes
-    count, changed, stale, row = 0, 0.0, chain.marches[0] > STALE, 0
+    count, changed, stale, row, before = 0, 0.0, chain.marches[0] > STALE, 0, balance.unconverged
     copy(bodies, chain.before)
     while count == 0 or (changed > AGREED * chain.load and count < CORRECTIONS):
         if not march_loaded(step, dt, chain.states[1:3], chain, bodies, shapes):
@@ -243,15 +249,16 @@ def step_coupled(
             return False
         stale = False
         take_off_response(directions, kind, chain, bodies, response)
+        balance.unconverged = before  # the last solution of the step counts
         solve(dt, kind, bodies, response, balance)
         changed = take_forces(directions, chain, bodies)
     chain.marches[0] = count
-    balance.residual = max(balance.residual, changed)
-    balance.unconverged += 1.0 if changed > AGREED * chain.load else 0.0
+    if changed > AGREED * chain.load:
+        balance.unconverged = before + 1.0
     factors = chain.surface.factors
     for i in range(bodies.points.shape[0]):
         for s in range(directions):
-            for j in range(factors.shape[2]):  # work of the contact on the chain, a part of that of its loads
+            for j in range(factors.shape[2]):  # less the work of the contact on the chain, a part of that of its loads
                 moved = shapes[s, i, j] * (factors[END, VALUE, j] - factors[START, VALUE, j])
                 balance.driven += bodies.points[i].weight * chain.forces[i, s] * moved
     for j in range(chain.march.y.size):
@@ -270,14 +277,16 @@ def on_surface(ahead: float, chain: Chain, bodies: Bodies) -> bool:
 
 
 @inline
-def record(
-    row: int, step: int, span: float, dt: float, kind: Kind, chain: Chain, bodies: Bodies, journal: Journal
-) -> None:
+def record(row: int, step: int, span: float, kind: Kind, chain: Chain, bodies: Bodies, journal: Journal) -> None:
     """Sample by a row of `chain.states`, with means over a span of seconds."""
     for when in range(1):  # START; a constant argument would be compiled once more
         read_links(when, chain.states[row], chain)
         if kind.normal_law != SPRING and find_pieces(0.0, chain.surface.edges, bodies):
-            evaluate_chain_surface(when, step, dt, kind, chain.surface, bodies)
+            for j in range(chain.surface.stamps.size):
+                chain.surface.stamps[j] = -1
+            set_start_speeds(when, 4 * step, chain.surface, bodies)
+            for i in range(bodies.points.shape[0]):
+                bodies.contacts[i].start += axial_speed(when, i, chain.surface, bodies)
     sample(span, kind, bodies, chain.surface.factors, journal)
 
 
@@ -297,7 +306,7 @@ def advance(
     if n_steps == 0:
         for i in range(bodies.points.shape[0]):
             bodies.contacts[i].normal = bodies.points[i].load
-        record(row, row, math.inf, dt, kind, chain, bodies, journal)
+        record(row, row, math.inf, kind, chain, bodies, journal)
     for _ in range(n_steps):
         step = progress.step
         row = 0 if kind.two_way else 2 * step
@@ -309,8 +318,8 @@ def advance(
         elif not step_coupled(step, dt, kind, chain, bodies, response, journal):
             return NOT_FINITE
         close_step(step * dt, dt, kind, bodies, response, journal)
-        if not math.isfinite(bodies.sliders[0].v + chain.surface.factors[END, VALUE, 0]):
+        if not are_finite(chain.surface.factors[END, VALUE, 0], bodies):
             return NOT_FINITE
         if (step + 1) % every == 0:
-            record(0 if kind.two_way else row + 2, step + 1, every * dt, dt, kind, chain, bodies, journal)
+            record(0 if kind.two_way else row + 2, step + 1, every * dt, kind, chain, bodies, journal)
     return DONE

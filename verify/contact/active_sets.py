@@ -33,18 +33,18 @@ def revise_limits(dt: float, kind: Kind, bodies: Bodies) -> bool:
     for i in range(bodies.points.shape[0]):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         static = slider.mu_static * contact.normal
-        if slider.mu_static <= slider.mu or not laws.rigid(point.law) or static <= 0.0 or contact.holds > 0.0:
+        if slider.mu_static <= slider.mu or not laws.set_valued(point.law) or static <= 0.0 or contact.holds > 0.0:
             continue
-        if contact.grip == SLIDES:
+        if contact.limit_state == SLIDES:
             start = slip_at_start(kind, slider, contact)
             if start * (2.0 * contact.slip - start) < 0.0:
-                contact.grip, tries = HOLDS, True
-        elif contact.grip == HOLDS:
+                contact.limit_state, tries = HOLDS, True
+        elif contact.limit_state == HOLDS:
             excess = abs(contact.friction - contact.slip / own_compliance(dt, slider, contact)) / static
             if excess > worst:
                 worst, exceeds = excess, i
     if not tries and exceeds >= 0:
-        bodies.contacts[exceeds].grip = LETS_GO
+        bodies.contacts[exceeds].limit_state = LETS_GO
     return tries or exceeds >= 0
 
 
@@ -52,22 +52,22 @@ def revise_limits(dt: float, kind: Kind, bodies: Bodies) -> bool:
 def residual(
     dt: float, slip: float, kind: Kind, slider: Record, point: Record, contact: Record
 ) -> tuple[float, float, float, float]:
-    """Residual of a point's law within its limit, for its mean slip and force: (by force, by slip, value, wanted).
+    """Residual of a point's law within its limit, for its mean slip and force: (by force, by slip, value, unlimited).
 
-    `wanted` is the force, N, that meets the law without its limit by the point's own response. The residual of a rigid
-    sticking point is its slip beyond that at which it sticks and CREEP, m/s; all others are forces, N, by the law at
-    the mean slip.
+    `unlimited` is the force, N, that meets the law without its limit by the point's own response. The residual of a
+    rigid sticking point is its slip beyond that at which it sticks and CREEP, m/s; all others are forces, N, by the law
+    at the mean slip.
     """
     normal, force = max(contact.normal, 0.0), contact.friction
     if slider.mu * normal <= 0.0:
         return 1.0, 0.0, force, 0.0
-    if laws.rigid(point.law):
-        stuck, own = contact.sticks_before > 0.0 or contact.grip == HOLDS, own_compliance(dt, slider, contact)
+    if laws.set_valued(point.law):
+        stuck, own = contact.sticks_before > 0.0 or contact.limit_state == HOLDS, own_compliance(dt, slider, contact)
         excess = slip - (sticking_slip(kind, slider, contact) if stuck else 0.0) + CREEP * own * force
         return CREEP * own, 1.0, excess, force - excess / own
     path = Path(slip, slip, 0.0, 0.0, math.inf, 0.0, dt)
-    wanted, _, by_end = laws.slope(path, normal, slider, point, contact)
-    return 1.0, -2.0 * by_end, force - wanted, wanted  # both ends of the path move with the slip
+    unlimited, _, by_end = laws.slope(path, normal, slider, point, contact)
+    return 1.0, -2.0 * by_end, force - unlimited, unlimited  # both ends of the path move with the slip
 
 
 @inline
@@ -92,7 +92,7 @@ def set_rows(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
     for i in range(n):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         diagonal, slope, miss = 1.0, 0.0, 0.0
-        if contact.at_limit == 0.0:
+        if contact.limit_sign == 0.0:
             slip = mean_slip(i, bodies, response)
             diagonal, slope, miss, _ = residual(dt, slip, kind, slider, point, contact)
         for k in range(n):
@@ -107,8 +107,8 @@ def set_rows(dt: float, kind: Kind, bodies: Bodies, response: Response) -> None:
 def eliminate(block: Array) -> None:
     """Solve in place; the solution is the last column.
 
-    Without pivoting: the rows are those of a symmetric positive definite matrix (compliances and a positive diagonal),
-    each times a scale, and such a matrix needs none.
+    Without pivoting: the rows between limits are those of a symmetric positive definite matrix (compliances and a
+    positive diagonal), each times a scale, and such a matrix needs none; rows at a limit are those of the identity.
     """
     n = block.shape[0]
     for k in range(n):
@@ -127,14 +127,14 @@ def step_to_limit(dt: float, kind: Kind, bodies: Bodies, response: Response) -> 
     n, share, first, side, largest = bodies.points.shape[0], 1.0, -1, 0.0, 0.0
     for i in range(n):
         contact, more, limit = bodies.contacts[i], response.block[i, n], limit_of(i, bodies)
-        if contact.at_limit == 0.0 and abs(contact.friction + share * more) > limit:
+        if contact.limit_sign == 0.0 and abs(contact.friction + share * more) > limit:
             first, side = i, math.copysign(1.0, more)
             share = max((side * limit - contact.friction) / more, 0.0)
     for i in range(n):
         more = share * response.block[i, n]
         if i == first:
             more = side * limit_of(i, bodies) - bodies.contacts[i].friction
-            bodies.contacts[i].at_limit = side
+            bodies.contacts[i].limit_sign = side
         add_friction(i, more, dt, kind, bodies, response)
         largest = max(largest, abs(more))
     return math.inf if first >= 0 else largest
@@ -147,13 +147,13 @@ def release_worst(dt: float, kind: Kind, bodies: Bodies, response: Response) -> 
     for i in range(bodies.points.shape[0]):
         point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
         contact.slip = mean_slip(i, bodies, response)
-        if contact.at_limit != 0.0:
-            _, _, _, wanted = residual(dt, contact.slip, kind, slider, point, contact)
-            share = contact.at_limit * wanted / limit_of(i, bodies)
+        if contact.limit_sign != 0.0:
+            _, _, _, unlimited = residual(dt, contact.slip, kind, slider, point, contact)
+            share = contact.limit_sign * unlimited / limit_of(i, bodies)
             if share < least:
                 least, leaves = share, i
     if leaves >= 0:
-        bodies.contacts[leaves].at_limit = 0.0
+        bodies.contacts[leaves].limit_sign = 0.0
     return leaves >= 0
 
 
@@ -172,7 +172,7 @@ def solve_active_sets(dt: float, largest: float, kind: Kind, bodies: Bodies, res
         if bodies.contacts[i].normal <= 0.0:
             inside = 0.0
         add_friction(i, inside - contact.friction, dt, kind, bodies, response)
-        contact.at_limit = math.copysign(1.0, inside) if abs(inside) == limit else 0.0
+        contact.limit_sign = math.copysign(1.0, inside) if abs(inside) == limit else 0.0
     for _ in range(ROUNDS * n + 20):
         set_rows(dt, kind, bodies, response)
         eliminate(response.block)
@@ -184,6 +184,6 @@ def solve_active_sets(dt: float, largest: float, kind: Kind, bodies: Bodies, res
     for i in range(n):
         point, contact = bodies.points[i], bodies.contacts[i]
         bounded = laws.limits(bodies.sliders[point.slider], point, contact) < math.inf
-        contact.holds = 1.0 if bounded and contact.at_limit == 0.0 else 0.0
+        contact.holds, contact.slip_by_law = 1.0 if bounded and contact.limit_sign == 0.0 else 0.0, contact.slip
         contact.events = 0
     return changed

@@ -72,21 +72,21 @@ def span(
 
 @once
 def from_event_to_event(slip: Slip, kinetic: float, static: float, sticks: bool, contact: Record) -> float:
-    """Mean friction in the step, exact for a linear acceleration; sets `holds`, `moved` and the events."""
+    """Mean friction in the step, exact for a linear acceleration; sets `holds`, `slip_by_law` and the events."""
     r, a0, change, force, used = slip.start, slip.first, slip.last - slip.first, 0.0, 0.0
     if sticks:  # what the last step left of its slip is taken off in this one
         a0 -= r
     own = slip.compliance
-    contact.holds, contact.moved, contact.events = 0.0, 0.0, 0
+    contact.holds, contact.slip_by_law, contact.events = 0.0, 0.0, 0
     if abs(r) <= AT_REST * own * kinetic and abs(a0) <= own * static:
         r, sticks = 0.0, True
     for _ in range(EVENTS):
         slides, before, start = not sticks, r, a0 + change * used
         time, r, sticks, event = span(r, start, a0 + change, own * kinetic, own * static, 1.0 - used, sticks)
         if slides:  # r is a parabola
-            side = sign(before) if before != 0.0 else sign(r)
+            side = sign(before) if before != 0.0 else -sign(start if start != 0.0 else change)
             force -= side * kinetic * time
-            contact.moved += 0.5 * time * (before + r) + change * time * time * time / 12.0
+            contact.slip_by_law += 0.5 * time * (before + r) + change * time * time * time / 12.0
         elif own > 0.0:
             force += (start + 0.5 * change * time) * time / own
         used += time
@@ -102,31 +102,35 @@ def from_event_to_event(slip: Slip, kinetic: float, static: float, sticks: bool,
 
 
 @once
-def held_alone(needed: float, kinetic: float, static: float, last: float, compliance: float, contact: Record) -> float:
-    """Mean friction of a point that sticks alone to a surface with a response, from the force that it `needed`.
+def held_alone(
+    sticking_force: float, kinetic: float, static: float, last: float, compliance: float, contact: Record
+) -> float:
+    """Mean friction of a point that sticks alone to a surface with a response, from the force that would hold it.
 
     A force that is constant in the step lets the surface move less evenly than the true one, so that means decide. The
     force is taken as the line through the last mean, half a step before the start, and this one in mid-step: it slips
     where that passes the static limit, from the share `stays` on, under the kinetic one.
     """
-    size, sign = abs(needed), 1.0 if needed > 0.0 else -1.0
-    contact.holds, contact.moved, contact.events = 1.0, 0.0, 0
+    size, sign = abs(sticking_force), 1.0 if sticking_force > 0.0 else -1.0
+    contact.holds, contact.slip_by_law, contact.events = 1.0, 0.0, 0
     if size <= static:
-        return needed
-    stays = min(max((static - sign * last) / (size - sign * last) - 0.5, 0.0), 1.0)
+        return sticking_force
+    stays = 0.0  # of a limit that has fallen below the last force already
+    if sign * last < static:
+        stays = max((static - sign * last) / (size - sign * last) - 0.5, 0.0)
     mean = stays * 0.5 * (0.5 * (sign * last + size) + static) + (1.0 - stays) * kinetic
     end = -sign * (size - mean) * compliance  # r at the end, grown on a line since it slips
-    contact.holds, contact.moved, contact.events = 0.0, 0.5 * (1.0 - stays) * end, 1
+    contact.holds, contact.slip_by_law, contact.events = 0.0, 0.5 * (1.0 - stays) * end, 1
     contact.event_share[0], contact.event_kind[0] = stays, SLIPS
     return float(sign * mean)
 
 
 @once
-def held_among_others(needed: float, limit: float, compliance: float, contact: Record) -> float:
+def held_among_others(sticking_force: float, limit: float, compliance: float, contact: Record) -> float:
     """Mean friction of one of several sticking points: what it needs, up to its limit in the step."""
-    force = min(max(needed, -limit), limit)
-    contact.holds, contact.moved, contact.events = 1.0, 0.5 * compliance * (force - needed), 0
-    if force != needed:
+    force = min(max(sticking_force, -limit), limit)
+    contact.holds, contact.slip_by_law, contact.events = 1.0, 0.5 * compliance * (force - sticking_force), 0
+    if force != sticking_force:
         contact.holds, contact.events = 0.0, 1
         contact.event_share[0], contact.event_kind[0] = 1.0, SLIPS
     return float(force)
@@ -136,11 +140,11 @@ def held_among_others(needed: float, limit: float, compliance: float, contact: R
 def force(slip: Slip, normal: float, slider: Record, point: Record, contact: Record) -> float:
     """Mean friction in the step, N."""
     kinetic, static, stuck = slider.mu * normal, slider.mu_static * normal, contact.sticks_before
-    needed = -2.0 * (slip.mean - slip.sticking) / slip.compliance
-    if slip.several and (stuck > 0.0 or contact.grip == HOLDS):
-        return held_among_others(needed / (1.0 + CREEP), limits(slider, contact), slip.compliance, contact)
+    sticking_force = -2.0 * (slip.mean - slip.sticking) / slip.compliance
+    if slip.several and (stuck > 0.0 or contact.limit_state == HOLDS):
+        return held_among_others(sticking_force / (1.0 + CREEP), limits(slider, contact), slip.compliance, contact)
     if stuck == 1.0 and slip.own:
-        return held_alone(needed, kinetic, static, contact.friction_before, slip.compliance, contact)
+        return held_alone(sticking_force, kinetic, static, contact.friction_before, slip.compliance, contact)
     static = kinetic if slip.several else static  # beyond it `active_sets.revise_limits` lets the point try
     return from_event_to_event(slip, kinetic, static, stuck > 0.0, contact)
 
@@ -164,7 +168,7 @@ def slope(path: Path, normal: float, slider: Record, point: Record, contact: Rec
     if end >= 0.0:
         return -side * kinetic, -side * kinetic, 0.0
     change, own = r - end, path.mobility * kinetic
-    # it reverses: a = change + mobility force satisfies (own + a) (end + a - own) = r (a - own), piecewise linear
+    # it reverses, r on two lines: a = change + mobility force satisfies (own + a) (end + a - own) = r (a - own)
     root = math.sqrt(change * change - 4.0 * own * (r + end - own))
     force = -2.0 * kinetic * (r + end - own) / (change + root)
     return side * force, side * force, (force - kinetic) / root
@@ -173,7 +177,7 @@ def slope(path: Path, normal: float, slider: Record, point: Record, contact: Rec
 @inline
 def limits(slider: Record, contact: Record) -> float:
     """Largest friction in the step, N: static where the point holds, else kinetic."""
-    mu = slider.mu_static if contact.grip == HOLDS else slider.mu
+    mu = slider.mu_static if contact.limit_state == HOLDS else slider.mu
     return float(mu * max(contact.normal, 0.0))
 
 
@@ -196,4 +200,4 @@ def power(path: Path, normal: float, slider: Record, contact: Record) -> float:
 @once
 def update(slip: Slip, normal: float, slider: Record, point: Record, contact: Record) -> float:
     """Mean of r over the step, m/s."""
-    return float(contact.moved)
+    return float(contact.slip_by_law)

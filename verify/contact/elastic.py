@@ -99,7 +99,7 @@ def limits(slider: Record, contact: Record) -> float:
     """Largest friction in the step, N: static where the point holds, else kinetic; none of the tanh law."""
     if slider.steepness > 0.0:
         return math.inf
-    mu = slider.mu_static if contact.grip == HOLDS else slider.mu
+    mu = slider.mu_static if contact.limit_state == HOLDS else slider.mu
     return float(mu * max(contact.normal, 0.0))
 
 

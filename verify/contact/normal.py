@@ -25,7 +25,7 @@ def following_mass(i: int, dt: float, kind: Kind, bodies: Bodies, response: Resp
 
 @inline
 def closing_speed(point: Record, contact: Record, foot: Record) -> float:
-    """Mean rate of depth of a point of a foot in the step, m/s, without the response of the beam."""
+    """Mean rate of depth of a point in the step by the surface's and the foot's mean speeds, m/s."""
     gained = foot.delta_vz + point.arm * foot.delta_pitch_rate
     return float(contact.closing - 0.5 * point.face * gained)
 

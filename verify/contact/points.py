@@ -63,9 +63,9 @@ def slip_of(dt: float, others: float, kind: Kind, slider: Record, contact: Recor
 def dissipating(force: float, slip: Slip, loss: float) -> float:
     """The force, no more than it may be on a surface that responds to it without creating energy.
 
-    A force f that is constant over the step dissipates dt f (s + c f/2) with the slip s without it and the compliance
-    c: between zero and 2 b, b = -s/c. Beyond, as in the step of a reversal, it returns at most what friction has
-    dissipated before: dt c/2 (f^2 - 2 b f) <= loss, so |f - b| <= sqrt(b^2 + 2 loss/(dt c)).
+    A force f that is constant over the step dissipates -dt f (s + c f/2) with the slip s without it and the compliance
+    c, which is positive between zero and 2 b, b = -s/c. Beyond, as in the step of a reversal, it returns at most what
+    friction has dissipated before: dt c/2 (f^2 - 2 b f) <= loss, so |f - b| <= sqrt(b^2 + 2 loss/(dt c)).
     """
     middle = -slip.mean / slip.compliance
     wide = math.sqrt(middle * middle + 2.0 * max(loss, 0.0) / (slip.dt * slip.compliance))
@@ -84,8 +84,10 @@ def set_friction(i: int, dt: float, kind: Kind, bodies: Bodies, response: Respon
         others = product(i, TANGENTIAL, response) + contact.self_response * contact.friction
     slip = slip_of(dt, others, kind, slider, contact)
     force = laws.force(slip, normal, slider, point, contact)
-    if slip.own and point.tangential_stiffness == 0.0:
-        force = dissipating(force, slip, contact.loss)
+    if slip.own and not laws.stores_energy(point.law):
+        bounded = dissipating(force, slip, contact.loss)
+        contact.slip_by_law += 0.5 * slip.compliance * (bounded - force)
+        force = bounded
     contact.slip = slip.mean + 0.5 * slip.compliance * force
     more = force - contact.friction
     if more != 0.0:

@@ -7,11 +7,12 @@ without a response the points of a slider are one root.
 
 import math
 
+from verify.contact import laws
 from verify.contact.active_sets import SETTLED, revise_limits, solve_active_sets
 from verify.contact.normal import set_normal_forces
 from verify.contact.one_way import solve_one_way_friction
 from verify.contact.points import set_friction
-from verify.contact.response import TANGENTIAL, own_product, product
+from verify.contact.response import NORMAL, TANGENTIAL, own_product, product
 from verify.contact.state import BILATERAL, HOLDS, SLIDES, SPRING, Bodies, Kind, Record, Response
 from verify.jit import inline, jit, once
 
@@ -48,7 +49,7 @@ def begin_forces(dt: float, kind: Kind, bodies: Bodies, response: Response | Non
         contact.self_response = 0.0
         if response is not None:
             contact.self_response = own_product(i, TANGENTIAL, response.shapes)
-        contact.grip = HOLDS if contact.sticks_before > 0.0 else SLIDES
+        contact.limit_state = HOLDS if contact.sticks_before > 0.0 else SLIDES
         coupled = coupled or bodies.points[i].dashpot > 0.0
     return coupled
 
@@ -68,25 +69,32 @@ def sweep(first: bool, dt: float, kind: Kind, bodies: Bodies, response: Response
 
 @once
 def end_forces(dt: float, kind: Kind, bodies: Bodies, response: Response | None) -> None:
-    """Set the speed of the surface with all forces, sticking, and the energy that friction has dissipated."""
+    """Set the speeds of the surface with all forces, sticking, and the energy that friction has dissipated."""
     for i in range(bodies.points.shape[0]):
         contact = bodies.contacts[i]
         contact.surface = contact.mean
         if response is not None:
             contact.surface += product(i, TANGENTIAL, response)
+            if kind.normal_two_way:
+                answer = product(i, NORMAL, response)
+                contact.vz += bodies.points[i].face * answer
+                contact.closing += answer if kind.normal_law == SPRING else 0.0
         contact.surface_before = 2.0 * contact.surface - contact.mean
         contact.sticks = contact.holds if contact.normal > 0.0 else 0.0
-        if bodies.points[i].tangential_stiffness == 0.0:
+        if not laws.stores_energy(bodies.points[i].law):
             contact.loss -= dt * contact.friction * contact.slip
 
 
 @inline
-def solve_together(largest: float, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
-    """Friction of all points and the normal forces that depend on it, in turns; largest change of the last round, N."""
+def solve_together(every: bool, largest: float, dt: float, kind: Kind, bodies: Bodies, response: Response) -> float:
+    """Friction of all points and the normal forces that depend on it, in turns; largest change of the last round, N.
+
+    `every` is False, an argument because a constant would compile `set_normal_forces` once more.
+    """
     changed = math.inf
     for _ in range(PASSES):
         changed = solve_active_sets(dt, largest, kind, bodies, response)
-        normal = set_normal_forces(changed < 0.0, dt, kind, bodies, response)  # never; False would be compiled anew
+        normal = set_normal_forces(every, dt, kind, bodies, response)
         changed = max(changed, normal)
         if normal <= SETTLED * largest:
             break
@@ -97,7 +105,8 @@ def solve_together(largest: float, dt: float, kind: Kind, bodies: Bodies, respon
 def solve(dt: float, kind: Kind, bodies: Bodies, response: Response | None, balance: Record) -> None:
     """Contact forces of the step, and what they add to sliders, feet and the columns (`response.rates`).
 
-    `response` is None of a surface that does not respond: numba then leaves out all that needs one.
+    `response` is None of a surface that does not respond: numba then leaves out all that needs one. Limits of friction
+    are revised from kinetic to static and from static to let go, so that each point revises them twice at most.
     """
     n, coupled = bodies.points.shape[0], begin_forces(dt, kind, bodies, response)
     largest, sweeps, changed, revised = 0.0, 0, 0.0, True
@@ -111,13 +120,11 @@ def solve(dt: float, kind: Kind, bodies: Bodies, response: Response | None, bala
                 break
         if response is not None:
             if changed > 0.0:
-                changed = solve_together(largest, dt, kind, bodies, response)
+                changed = solve_together(sweeps == 0, largest, dt, kind, bodies, response)
             revised = kind.several and revise_limits(dt, kind, bodies)
     if kind.normal_law == SPRING and response is None:
         for i in range(n):
             if i + 1 == n or bodies.points[i + 1].slider != bodies.points[i].slider:
                 changed = max(changed, solve_one_way_friction(i, dt, kind, bodies))
-    balance.sweeps += sweeps
     balance.unconverged += 1.0 if changed > UNCONVERGED * largest else 0.0
-    balance.residual = max(balance.residual, changed)
     end_forces(dt, kind, bodies, response)

@@ -24,7 +24,7 @@ LAWS = {"coulomb": COULOMB, "tanh": TANH}
 PRESCRIBED, BILATERAL, SPRING = range(3)
 """Normal laws of all points: N = load; N = load + mass times the acceleration of the surface; springs and dashpots."""
 SLIDES, HOLDS, LETS_GO = 0.0, 1.0, 2.0
-"""`grip` of a point in the step: kinetic limit; static limit; kinetic limit after the static one was exceeded."""
+"""`limit_state` of a point in the step: kinetic limit; static limit; kinetic one after the static one was exceeded."""
 STICKS, SLIPS, TURNS, LANDS, LEAVES = 1.0, 2.0, 3.0, 4.0, 5.0
 """Kinds of events, rows (time, kind, point, distance)."""
 
@@ -64,7 +64,7 @@ CONTACT = record(
     "normal friction sticks depth stretch point_vz surface surface_before loss",  # state
     "xi xi_point xi_end xi_point_end slope v_end vz slope_vz closing start mean end surface_delta_v",
     "depth_before sticks_before friction_before tilt_end drift_end",
-    "slip self_response grip holds moved at_limit rest_gain least most power",
+    "slip self_response limit_state holds slip_by_law limit_sign stopping_gain least most power",
     integers="piece events",
     rows="event_share event_kind",
 )
@@ -161,7 +161,7 @@ class Path(NamedTuple):
     end: float
     mobility: float
     """dt/m of the slider, which bends the line where the point's own force reverses."""
-    late: float
+    end_weight: float
     """Share of the force at the end of the step in the mean of a smooth law."""
     limit: float
     """Largest friction, N, infinite for the law without its limit."""

@@ -14,9 +14,10 @@ EQUAL = 1e-7
 SETTLED = 1e-8
 """Relative change at which Newton's method ends: the next one would be its square."""
 ROUNDS = 80
-"""Newton steps at most: the functions are convex, so that they do not return; 6 are common."""
-STRAIGHT = 0.1
-"""Half width in K r below which the mean over a line is a series, off by 1e-6 of its curvature term."""
+"""Newton steps at most: the functions have a curvature of one sign, so that they do not return; 6 are common."""
+STRAIGHT = 0.01
+"""Half width in K r below which the mean over a line is a series of order 4, whose next term is below 1e-13; above it
+the difference of logarithms has no more rounding than that."""
 
 
 @inline
@@ -114,32 +115,34 @@ def force(slip: Slip, normal: float, slider: Record, point: Record, contact: Rec
     The acceleration of the surface is its mean; r at the start follows from the mean of r.
     """
     limit, steepness, a = slider.mu * normal, slider.steepness, 0.5 * (slip.first + slip.last)
-    if slip.compliance * limit * steepness > 1e-9:  # below, the response changes no digit of the mean that is known
+    if slip.compliance * limit * steepness > 1e-9:  # below, the response changes half of that of the mean
         return change(slip.mean + 0.5 * a, a, slip.compliance * limit, steepness) / slip.compliance
     return float(limit * mean_over_line(slip.mean + 0.5 * a, slip.mean - 0.5 * a, 0.0, steepness)[0])
 
 
 @inline
-def mean_over_line(start: float, end: float, late: float, steepness: float) -> tuple[float, float]:
+def mean_over_line(start: float, end: float, end_weight: float, steepness: float) -> tuple[float, float]:
     """(Mean of -tanh(K r), its derivative by `end`) where r goes from `start` to `end` on a line.
 
-    A share `late` of the value at its end is taken instead.
+    A share `end_weight` of the value at its end is taken instead.
     """
     t, half, middle = math.tanh(steepness * end), 0.5 * steepness * (end - start), 0.5 * steepness * (end + start)
     if abs(half) < STRAIGHT:
         mean = math.tanh(middle)
         left = 1.0 - mean * mean
-        mean, rate = mean - half * half / 3.0 * mean * left, (0.5 - half / 3.0 * mean) * left
+        square = half * half
+        rate = (0.5 - half / 3.0 * mean) * left
+        mean -= square * mean * left * (1.0 / 3.0 - square * (2.0 - 3.0 * mean * mean) / 15.0)
     else:
         mean = (ln_cosh(middle + half) - ln_cosh(middle - half)) / (2.0 * half)
         rate = (t - mean) / (2.0 * half)
-    return -(mean + late * (t - mean)), -steepness * (rate + late * (1.0 - t * t - rate))
+    return -(mean + end_weight * (t - mean)), -steepness * (rate + end_weight * (1.0 - t * t - rate))
 
 
 @once
 def slope(path: Path, normal: float, slider: Record, point: Record, contact: Record) -> tuple[float, float, float]:
     """(Friction, the same, its derivative by the end of the path)."""
-    limit, (mean, rate) = slider.mu * normal, mean_over_line(path.start, path.end, path.late, slider.steepness)
+    limit, (mean, rate) = slider.mu * normal, mean_over_line(path.start, path.end, path.end_weight, slider.steepness)
     return limit * mean, limit * mean, limit * rate
 
 
@@ -151,9 +154,12 @@ def limits(slider: Record, contact: Record) -> float:
 
 @once
 def power(path: Path, normal: float, slider: Record, contact: Record) -> float:
-    """Dissipated power of the step, W: that of the mean force, and of the share of the force at the end."""
-    slip, late = 0.5 * (path.start + path.end), path.late * slider.mu * normal
-    return float(-contact.friction * slip + late * math.tanh(slider.steepness * path.end) * (path.end - slip))
+    """Dissipated power of the step, W: that of the mean force at the mean slip, and of the share of it at the end.
+
+    A reversal with equal speeds before and after it dissipates nothing by this, as the mean force is zero.
+    """
+    slip, end_weight = 0.5 * (path.start + path.end), path.end_weight * slider.mu * normal
+    return float(-contact.friction * slip + end_weight * math.tanh(slider.steepness * path.end) * (path.end - slip))
 
 
 @once

@@ -44,9 +44,9 @@ class Rigid(NamedTuple):
 
     mass: float
     """Across the beam, kg."""
-    load: float
+    pressing: float
     """Acceleration that presses it on, m/s^2."""
-    pull: float
+    external: float
     """Acceleration of its slider by the external force, m/s^2."""
     lever: float
     restitution: float
@@ -61,7 +61,7 @@ class Under(NamedTuple):
     slope_vz: float
     """Its part by slopes."""
     acceleration: float
-    """Acceleration across of a point that rides on it, m/s^2."""
+    """Acceleration across of a point that rides on it, m/s^2, without w' dv/dt: mu w' of the load."""
     along: float
     """Tangential speed of the material, m/s."""
 
@@ -142,15 +142,15 @@ def end_of_phase(
     Both halves of the rest are looked at first, then the change of sign is bisected.
     """
     slider, foot, riding = bodies.sliders[0], bodies.feet[0], bodies.contacts[0].depth > 0.0
-    low, high, ended, ax = 0.0, left, False, 0.0 if riding else rigid.pull
+    low, high, ended, ax = 0.0, left, False, 0.0 if riding else rigid.external
     for trial in range(2 + BISECTIONS):
         s = left * 0.5 * (trial + 1) if trial < 2 else 0.5 * (low + high)
         if (trial == 1 and ended) or (trial > 1 and not low < s < high):
             continue
         x = slider.x + slider.free * (slider.v + 0.5 * ax * s) * s
         under = surface_at(time + done + s, done + s, x, slider.free * (slider.v + ax * s), rigid.lever, ground)
-        margin = foot.height + (foot.velocity_z - 0.5 * rigid.load * s) * s - under.level
-        margin = rigid.load + under.acceleration if riding else margin
+        margin = foot.height + (foot.velocity_z - 0.5 * rigid.pressing * s) * s - under.level
+        margin = rigid.pressing + under.acceleration if riding else margin
         if margin < 0.0:
             high, ended = s, True
         else:
@@ -164,13 +164,13 @@ def end_of_phase(
 def fly(s: float, rigid: Rigid, bodies: Bodies, journal: Journal) -> None:
     """A flight of s seconds."""
     slider, foot, contact, total = bodies.sliders[0], bodies.feet[0], bodies.contacts[0], journal.sums[0]
-    moved, rise = (slider.v + 0.5 * rigid.pull * s) * s, (foot.velocity_z - 0.5 * rigid.load * s) * s
+    moved, rise = (slider.v + 0.5 * rigid.external * s) * s, (foot.velocity_z - 0.5 * rigid.pressing * s) * s
     slider.x += slider.free * moved
-    slider.v += rigid.pull * s
+    slider.v += rigid.external * s
     foot.height += rise
-    foot.velocity_z -= rigid.load * s
+    foot.velocity_z -= rigid.pressing * s
     total.external_work += slider.external_force * moved * (slider.inverse_mass > 0.0)
-    total.load_work -= rigid.mass * rigid.load * rise
+    total.load_work -= rigid.mass * rigid.pressing * rise
     contact.normal, contact.friction, contact.sticks = 0.0, 0.0, 0.0
 
 
@@ -214,19 +214,22 @@ def ride(time: float, done: float, s: float, ground: Ground, rigid: Rigid, bodie
     start = surface_at(time + done, done, x, free * v, lever, ground)
     middle = surface_at(time + done + 0.5 * s, done + 0.5 * s, x + free * 0.5 * v * s, free * v, lever, ground)
     end = surface_at(time + done + s, done + s, x + free * v * s, free * v, lever, ground)
-    normal, gain = rigid.mass * max(rigid.load + middle.acceleration, 0.0), end.along - start.along - s * rigid.pull
+    normal, gain = (
+        rigid.mass * max(rigid.pressing + middle.acceleration, 0.0),
+        end.along - start.along - s * rigid.external,
+    )
     contact.sticks_before = contact.sticks
     force = friction_of(v - start.along, gain, s * slider.inverse_mass, normal, bodies)
-    slider.v = v + s * slider.inverse_mass * force + s * rigid.pull
+    slider.v = v + s * slider.inverse_mass * force + s * rigid.external
     mean, surface = 0.5 * (v + slider.v), 0.5 * (start.along + end.along)
     slider.x = x + free * mean * s
     under = surface_at(time + done + s, done + s, slider.x, free * slider.v, lever, ground)
     rise = under.level - foot.height
-    across = 0.5 * rigid.mass * (under.vz**2 - foot.velocity_z**2) + rigid.mass * rigid.load * rise
+    across = 0.5 * rigid.mass * (under.vz**2 - foot.velocity_z**2) + rigid.mass * rigid.pressing * rise
     foot.height, foot.velocity_z = under.level, under.vz
     contact.normal, contact.friction, contact.surface, contact.sticks = normal, force, surface, contact.holds
     add_works(s, normal, force, surface, mean, across, middle.slope_vz, bodies, journal)
-    total.load_work -= rigid.mass * rigid.load * rise
+    total.load_work -= rigid.mass * rigid.pressing * rise
     total.touch_time += s
     total.stick_time += s if contact.sticks > 0.0 else 0.0
     total.max_friction = max(total.max_friction, abs(force))
@@ -255,7 +258,7 @@ def land(time: float, since: float, end: float, ground: Ground, rigid: Rigid, bo
     add_works(
         1.0, impulse, force, under.along, 0.5 * (v + slider.v), impulse * under.vz, under.slope_vz, bodies, journal
     )
-    away, load = rigid.restitution * into, rigid.load + under.acceleration
+    away, load = rigid.restitution * into, rigid.pressing + under.acceleration
     if load <= 0.0:
         return False
     height = away * away / (2.0 * load)
@@ -281,7 +284,7 @@ def advance_point(time: float, dt: float, ground: Ground, rigid: Rigid, bodies: 
         if contact.depth == SET_DOWN:
             under = surface_at(time + done, done, slider.x, slider.free * slider.v, rigid.lever, ground)
             foot.height, foot.velocity_z = under.level, under.vz
-            contact.depth = RIDES if rigid.load + under.acceleration > 0.0 else FLIES
+            contact.depth = RIDES if rigid.pressing + under.acceleration > 0.0 else FLIES
         s, ended = end_of_phase(time, done, left, ground, rigid, bodies)
         kind = 0.0
         if contact.depth > 0.0:

@@ -25,14 +25,15 @@ from verify.dynamics.state import (
     Harmonic,
     Journal,
 )
-from verify.dynamics.surface import AHEAD, evaluate_surface, find_pieces
+from verify.dynamics.surface import AHEAD, evaluate_surface, find_pieces, set_start_speeds
 from verify.jit import FAST, inline, jit, once
 
 POWERS = (1.0 / 6.0, 4.0 / 6.0, 3.0 / 6.0, -2.0 / 6.0)
 """Weights of powers at the start, in mid-step, at the end with the step's contact forces and, last, without them.
 
-Simpson's rule has 1/6, 4/6, 1/6. Powers are linear in the contact forces, and those add half as much in mid-step as at
-the end, where both values are known: 4/6 of a half of the difference are 2/6 more with them and 2/6 less without."""
+Simpson's rule has 1/6, 4/6, 1/6. Contact forces add half as much to a rate in mid-step as at the end, where both values
+are known: 4/6 of a half of the difference are 2/6 more with them and 2/6 less without. That is exact for the power of
+the drive, which is linear in the rates; the quadratic loss of modes misses a quarter of the square of what they add."""
 AT_REST = 1e-13
 """Slip, over the speeds of which it is a difference, at which a point moves with the surface."""
 
@@ -81,7 +82,7 @@ def update_point(i: int, dt: float, kind: Kind, bodies: Bodies) -> None:
     """State of the law of a point to the end of the step; without feet also the place of its slider."""
     point, contact, slider = bodies.points[i], bodies.contacts[i], bodies.sliders[bodies.points[i].slider]
     spring = kind.normal_law == SPRING
-    if spring and point.tangential_stiffness == 0.0:
+    if spring and not laws.stores_energy(point.law):
         return
     mean, normal = slider.v + 0.5 * slider.delta_v, max(contact.normal, 0.0)
     moves_along = kind.two_way and abs(contact.slip) <= AT_REST * (abs(mean) + abs(contact.surface))
@@ -163,6 +164,17 @@ def evaluate_step(step: int, dt: float, kind: Kind, beam: Beam, bodies: Bodies) 
         evaluate_surface(when, mark, dt, kind, beam.surface, bodies)
 
 
+@inline
+def are_finite(surface: float, bodies: Bodies) -> bool:
+    """Whether a factor of the surface and the places of all bodies are finite."""
+    total = surface
+    for b in range(bodies.sliders.shape[0]):
+        total += bodies.sliders[b].x + bodies.sliders[b].v
+    for k in range(bodies.feet.shape[0]):
+        total += bodies.feet[k].height + bodies.feet[k].pitch
+    return math.isfinite(total)
+
+
 @once
 def begin_record(start: int, dt: float, kind: Kind, beam: Beam, bodies: Bodies, journal: Journal) -> None:
     """The surface at the start of a run, and the sample there: points without feet carry their loads."""
@@ -217,10 +229,10 @@ def advance(
         if response is not None:
             filter_rates(dt, beam.n_complex, beam.rows.coarse, surface.factors)
         shift_factors(surface.factors)
-        if not math.isfinite(bodies.sliders[0].v + surface.factors[START, VALUE, 0]):
+        if not are_finite(surface.factors[START, VALUE, 0], bodies):
             return NOT_FINITE
         if (step + 1) % every == 0:
             if not spring and find_pieces(0.0, surface.edges, bodies):
-                evaluate_surface(last - END, 4 * step + 4, dt, kind, surface, bodies)
+                set_start_speeds(last - END, 4 * step + 4, surface, bodies)
             sample(every * dt, kind, bodies, surface.factors, journal)
     return DONE

@@ -5,7 +5,6 @@ import math
 from verify.arrays import Array, Indices
 from verify.contact import laws
 from verify.contact.normal import closing_speed
-from verify.contact.response import NORMAL, product
 from verify.contact.state import (
     BILATERAL,
     LANDS,
@@ -47,22 +46,15 @@ def add_point(
             total.load_work -= dt * point.load * (contact.point_vz - 0.5 * dt * fall)
             total.slope_work += dt * push * contact.slope * mean * bodies.sliders[point.slider].free
         total.max_fall = max(total.max_fall, fall)
-    vz = contact.vz
-    if response is not None and kind.normal_two_way:
-        answer = product(i, NORMAL, response)
-        vz += point.face * answer
-        if spring:
-            contact.closing += answer
-            contact.vz = vz
     loss = dt * (contact.power if spring and response is None else -force * contact.slip)
     total.friction_loss += loss
     total.tangential_work += loss + dt * force * mean
-    if loss < 0.0 and point.tangential_stiffness == 0.0:
+    if loss < 0.0 and not laws.stores_energy(point.law):
         balance.created -= loss
     if response is not None:
         total.friction_on_beam -= dt * point.weight * force * contact.surface
     if kind.normal_two_way or spring:
-        across = dt * push * point.face * (vz - slope_vz)
+        across = dt * push * point.face * (contact.vz - slope_vz)
         total.normal_work += across
         total.normal_on_beam -= point.weight * across
     if spring:
@@ -81,7 +73,7 @@ def add_sums(
     balance: Record,
     slider_of_foot: Indices,
 ) -> None:
-    """Works, losses and integrals of the step; sliders and feet are still at its start."""
+    """Works, losses and integrals of the step; speeds of sliders and feet are still those of its start."""
     spring = kind.normal_law == SPRING
     for b in range(bodies.sliders.shape[0]):
         slider, total = bodies.sliders[b], sums[b]

@@ -100,10 +100,9 @@ of the external force or a prescribed speed, of preload and weight; friction los
 the beam of friction, of normal forces. Integrals over time: friction (on the slider, N s), normal force, share of
 points in contact and sticking, displacement of the surface under the points in contact (mean of points). The largest
 friction, N; the largest downward acceleration of the surface, m/s^2; energy of the springs, J."""
-BALANCE = record("driven lost resisted created sweeps unconverged residual")
+BALANCE = record("driven lost resisted created unconverged")
 """Work of the drive, loss in modes and circuits, of it in circuits, J (of a run that keeps accounts); energy that
-friction created, the sum of positive contact works of all steps, J; sweeps of all steps; steps whose contact solution
-did not converge; largest residual of a step, N."""
+friction created, the sum of positive contact works of all steps, J; steps whose contact solution did not converge."""
 SAMPLE = record(
     "travelled speed friction normal_force contact_fraction stick_fraction friction_loss tangential_work surface_speed"
 )

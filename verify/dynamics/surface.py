@@ -189,3 +189,15 @@ def evaluate_surface(when: int, mark: int, dt: float, kind: Kind, surface: Surfa
             under_point(when, kind, motion, xi, v, on, slider, point, contact)
         if when == MIDDLE:
             contact.xi, contact.xi_point, contact.slope = motion.xi, xi, motion.slope
+
+
+@jit(no_cpython_wrapper=True)
+def set_start_speeds(start: int, mark: int, surface: Surface, bodies: Bodies) -> None:
+    """Set the speed of the surface under points without feet at the start of a step, START; moves nothing."""
+    for i in range(bodies.points.shape[0]):
+        point, contact = bodies.points[i], bodies.contacts[i]
+        set_polynomials(start, contact.piece, mark, surface)
+        left, length = surface.edges[contact.piece], surface.edges[contact.piece + 1] - surface.edges[contact.piece]
+        xi = (bodies.sliders[point.slider].x + point.offset - left) / length
+        motion = motion_under(xi, length, point.lever, surface.polynomials[contact.piece])
+        contact.start = tangential(motion, point.lever)

@@ -2,8 +2,8 @@
 
 from verify.quantities import (  # noqa: F401
     actuator,
+    cases,
     chain,
-    contact,
     control,
     drive,
     identify,

@@ -1,4 +1,4 @@
-"""Quantities of the nonlinear chain: benchmark problems, motion from rest, a slider on the chain."""
+"""Quantities of the nonlinear chain: contact line, motion from rest, a slider on the chain."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -10,21 +10,17 @@ from verify import settings
 from verify.errors import InputError
 from verify.problem.beam import PointForce
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.options import ForceAmplitude, Mode, SoftStart, Wall, check_forces
+from verify.quantities.options import ForceAmplitude, Mode, SoftStart, check_forces
 from verify.quantities.slider import SliderOptions, TimeOptions, motion_arguments
-from verify.validation import unit
+from verify.validation import check_integer, unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.chain.departure import DrivenChain
     from verify.dynamics.result import Motion
 
 Links = Annotated[int, Meta(ge=1, description="N, number of links")]
 Seconds = Annotated[float, unit("s"), Meta(gt=0, description="duration from rest, s")]
-TipLoad = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
-TipComponent = Annotated[Literal["deflection", "shortening"], Meta(description="w/L, or 1 - x/L")]
-HubSpeed = Annotated[float, Meta(ge=0, le=1e3, description="rotation rate of the hub over sqrt(EI / (rho A L^4))")]
-Gyrations = Annotated[float, Meta(gt=0, description="amplitude at mid-span over the radius of gyration sqrt(I / A)")]
-Step = Annotated[float, Meta(gt=0, description="fixed step, s; default: adaptive")]
 Inertia = Annotated[
     settings.Inertia, Meta(description="axial inertia: rigid links with or without it, or links that stretch by EA / l")
 ]
@@ -33,72 +29,30 @@ Reading = Annotated[
     Meta(description="end: at mid-span; rms: until then; beam: rms over joints, start phases and both directions"),
 ]
 ChainLoad = Annotated[settings.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")]
-BEAM = ("beam",)
 
 
-@quantity("chain.cantilever_tip", unit="1", reads=())
-def cantilever_tip(*, segments: Links, load: TipLoad, component: TipComponent = "deflection") -> float:
-    """Tip displacement over L of a cantilever under a dead transverse force (elastica)."""
-    from verify.chain.benchmarks import CANTILEVER, EI
-    from verify.chain.statics import bend
-
-    return float(getattr(bend(CANTILEVER, segments, load * EI), component))
-
-
-@quantity("chain.rollup_gap", unit="1", reads=())
-def rollup_gap(*, segments: Links, wall: Wall = "half") -> float:
-    """Distance between the ends over L of a cantilever rolled up by an end moment 2 pi EI/L."""
-    from verify.chain.benchmarks import rollup_gap
-
-    return rollup_gap(segments, wall)
-
-
-@quantity("chain.hanging_frequency", unit="1", reads=())
-def hanging_frequency(*, segments: Links, mode: Mode) -> float:
-    """Natural frequency of a hanging chain of uniform links, omega sqrt(L/g)."""
-    from verify.chain.benchmarks import hanging_frequency
-
-    return hanging_frequency(mode, segments)
-
-
-@quantity("chain.rotating_frequency", unit="1", reads=())
-def rotating_frequency(*, segments: Links, mode: Mode, speed: HubSpeed) -> float:
-    """Lead-lag natural frequency of a rotating cantilever, omega sqrt(rho A L^4/EI)."""
-    from verify.chain.benchmarks import rotating_frequency
-
-    return rotating_frequency(mode, segments, speed)
-
-
-@quantity("chain.large_amplitude_frequency", unit="1", reads=BEAM)
-def large_amplitude_frequency(scene: Scene, cache: "SolutionCache", *, segments: Links, amplitude: Gyrations) -> float:
-    """First frequency of a beam between immovable hinges at finite amplitude over the linear frequency."""
-    from verify.chain.benchmarks import large_amplitude_frequency
-
-    return large_amplitude_frequency(scene.beam, amplitude, segments, cache.progress)
-
-
-@quantity("chain.energy_drift", unit="1", reads=BEAM)
-def energy_drift(scene: Scene, cache: "SolutionCache", *, segments: Links, step: Step | None = None) -> float:
-    """Relative energy drift of an undamped roller-ended chain in a period of mode 1, released from 0.05 L."""
-    from verify.chain.benchmarks import energy_drift
-
-    return energy_drift(scene.beam, segments, step, progress=cache.progress)
-
-
-@quantity("chain.imbalance", unit="1", reads=())
-def imbalance(cache: "SolutionCache", *, segments: Links) -> float:
-    """Residual of the chain's energy balance under hub motion and an eccentric load, over the damping loss."""
-    from verify.chain.benchmarks import energy_balance_error
-
-    return energy_balance_error(segments, "free", 1e-9, cache.progress)
-
-
-@quantity("chain.contact_line_error", unit="1", reads=BEAM)
+@quantity("chain.contact_line_error", unit="1", reads=("beam",))
 def contact_line_error(scene: Scene, *, segments: Links, mode: Mode, x: Place) -> float:
-    """Slope error of the chain's contact line at x in a mode, relative to the largest slope."""
-    from verify.chain.benchmarks import contact_line_error
+    """Slope error of the chain's contact line at x in a mode, relative to the largest slope.
 
-    return contact_line_error(scene.beam, mode, segments, x)
+    On the piece at x, against the exact mode. Order 3, at a clamped wall 1.
+    """
+    import numpy as np
+
+    from verify.analytic_modes import ExactModel
+    from verify.chain.system import build_system, link_at, straight_chain
+    from verify.segment_model import SegmentModel
+    from verify.segments.reading import contact_line
+
+    check_integer("segments", segments, 2)
+    system, exact = build_system(scene.beam, segments), ExactModel(scene.beam)
+    joints = SegmentModel(scene.beam, segments).modes(mode).readings["raw"]()[mode - 1]
+    link, _ = link_at(system, x)
+    edges, xi = system.nodes[link - 1 : link + 1], np.linspace(0.0, 1.0, 17)
+    powers = contact_line(straight_chain(system), joints[None]).c[::-1, link - 1, 0] * np.ptp(edges) ** np.arange(4)
+    slope = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(powers)) / np.ptp(edges)
+    error = slope - exact.mode_shape(mode, edges[0] + xi * np.ptp(edges), 1)
+    return float(abs(error).max()) / float(abs(exact.mode_shape(mode, system.nodes, 1)).max())
 
 
 def _drive(scene: Scene, time: TimeOptions) -> tuple[tuple[PointForce, ...], float, float]:
@@ -122,6 +76,14 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
     time: Seconds = 1e-3
     force: ForceAmplitude | None = None
 
+    def chain(self, scene: Scene, **settings: Any) -> "tuple[DrivenChain, float]":
+        """The chain under the scene's forces, and the duration, s. Raises InputError."""
+        from verify.chain.departure import DrivenChain
+
+        forces, hertz, time = _drive(scene, TimeOptions(model="analytic", time=self.time, force=self.force))
+        chain = DrivenChain(beam=scene.beam, forces=forces, frequency_hz=hertz, count=self.segments, **settings)
+        return chain, time
+
 
 @quantity("chain.transient_deflection", unit="m")
 def transient_deflection(
@@ -136,11 +98,8 @@ def transient_deflection(
     ] = "corrected",
 ) -> float:
     """Deflection of the nonlinear chain at x after `time` from rest under the scene's forces."""
-    from verify.chain.benchmarks import transient
-
-    forces, hertz, time = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    motion = transient(scene.beam, forces, hertz, [time], run.segments, load=load, progress=cache.progress)
-    return float(motion.deflection([x], reading=reading)[0, 0])
+    chain, time = run.chain(scene, load=load, progress=cache.progress)
+    return float(chain.motion([time]).deflection([x], reading=reading)[0, 0])
 
 
 @quantity("chain.axial_departure", unit="1")
@@ -157,13 +116,8 @@ def axial_departure(
 
     Both are read on their straight links.
     """
-    from verify.chain.benchmarks import departure, departure_over_beam
-
-    drive = _drive(scene, TimeOptions(model="analytic", time=run.time, force=run.force))
-    settings: dict[str, Any] = {"load": load, "inertia": inertia, "progress": cache.progress}
-    if of == "beam":
-        return departure_over_beam(scene.beam, *drive, run.segments, **settings)
-    return float(getattr(departure(scene.beam, *drive, run.segments, **settings), of))
+    chain, time = run.chain(scene, load=load, inertia=inertia, progress=cache.progress)
+    return chain.departure_over_beam(time) if of == "beam" else chain.departure(time)[of == "rms"]
 
 
 class OnChain(msgspec.Struct, frozen=True, kw_only=True):

@@ -247,22 +247,6 @@ def coupling_size(
     return size
 
 
-@quantity("slider.terminal_speed", unit="m/s", reads=("beam", "drive"))
-def terminal_speed(
-    scene: Scene,
-    *,
-    amplitude: Annotated[float, Meta(gt=0, description="amplitude of the wave, m")],
-    slope: opt.Slope,
-    mu: opt.Mu,
-    kinematics: Annotated[settings.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
-) -> float:
-    """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
-    from verify.motor.travelling_wave import terminal_speed
-
-    slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
-    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
-
-
 @quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
 def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
     """Reflection Gamma in a window of the driven beam in time, without slider: two waves fitted to its phasors."""

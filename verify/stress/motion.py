@@ -6,11 +6,11 @@ from math import inf, tanh
 
 import numpy as np
 
-from verify.chain.benchmarks import rollup_gap
+from verify.cases import roll_up
+from verify.cases.creep import creep_speed, free_decay
 from verify.chain.kinematics import at_rest
 from verify.chain.motion import simulate, step_limit
 from verify.chain.system import build_system
-from verify.dynamics.belt import creep_speed, free_decay
 from verify.problem.slider import GRAVITY
 from verify.stress.engine import check, worst
 from verify.stress.reference import STRIP, D
@@ -66,7 +66,7 @@ def friction_creep(left: float) -> float:
 @check("chain-roll-up", "turns", (1, 5, 20), 1e-12, beyond=(40,))
 def chain_roll_up(turns: float) -> float:
     """Gap of a cantilever of 100 links rolled into closed circles by an end moment, over its length."""
-    return rollup_gap(100, "half", turns)
+    return roll_up.gap("half", 100, turns)
 
 
 @check("rk4-stability", "dt / limit", (0.1, 0.5, 0.9, 0.99), 1e-12, beyond=(1.01, 2.0), refused=True)

@@ -1,4 +1,4 @@
-"""Benchmark motions of the nonlinear chain and its departure from the linear one by axial inertia."""
+"""Departure of the nonlinear chain from the linear one by axial inertia, and its contact line."""
 
 import numpy as np
 import pytest
@@ -6,14 +6,7 @@ from msgspec import structs
 from reference.multibody import rigid_motion
 
 from verify.analysis.solution_cache import SolutionCache
-from verify.chain.benchmarks import (
-    contact_line_error,
-    departure,
-    energy_balance_error,
-    linear_deflection,
-    rms,
-    transient,
-)
+from verify.chain.departure import DrivenChain, linear_deflection, rms
 from verify.chain.system import build_system
 from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.simulate import simulate
@@ -34,14 +27,8 @@ def forces(amplitude):
     )
 
 
-def departed(amplitude, inertia, n=17):
-    return departure(PLATE, forces(amplitude), HERTZ, TIME, n, x=0.23, inertia=inertia)
-
-
-@pytest.mark.parametrize("tip", ["free", "roller"])
-def test_work_energy_and_damping_balance_under_all_loads(tip):
-    assert energy_balance_error(6, tip, 1e-9) < 2e-7
-    assert energy_balance_error(6, tip, 1e-6) < 2e-4
+def driven(forces, n, beam=PLATE, **settings):
+    return DrivenChain(beam=beam, forces=forces, frequency_hz=HERTZ, count=n, **settings)
 
 
 @pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free"), ("clamped", "pinned")])
@@ -72,15 +59,15 @@ def test_the_linear_chain_is_the_limit_of_small_forces():
 
 @pytest.mark.parametrize("inertia", ["full", "elastic"])
 def test_departure_grows_with_the_square_of_the_force(inertia):
-    small, large = (departed(force, inertia) for force in (1.0, 4.0))
-    assert large.rms / small.rms == pytest.approx(16.0, rel=0.05)
-    assert small.rms > 1e-8
+    small, large = (driven(forces(size), 17, inertia=inertia).departure(TIME, 0.23)[1] for size in (1.0, 4.0))
+    assert large / small == pytest.approx(16.0, rel=0.05)
+    assert small > 1e-8
 
 
 def test_stiff_links_tend_to_rigid_ones_with_the_inverse_of_their_stiffness():
     def deflection(beam, inertia):
-        motion = transient(beam, forces(60.0), HERTZ, np.linspace(0.0, 4e-4, 101), 9, inertia=inertia)
-        return motion.deflection([0.23])[:, 0]
+        chain = driven(forces(60.0), 9, beam, load="reciprocal", inertia=inertia)
+        return chain.motion(np.linspace(0.0, 4e-4, 101)).deflection([0.23])[:, 0]
 
     gaps = []
     for factor in (40.0, 400.0):  # EA over EI as the inverse square of the thickness
@@ -94,11 +81,13 @@ def test_stiff_links_tend_to_rigid_ones_with_the_inverse_of_their_stiffness():
 def test_a_departure_at_a_node_is_refused():
     symmetric = [PointForce(position=x, amplitude=s) for x, s in ((0.1, 1.0), (0.4, -1.0))]
     with pytest.raises(InputError, match="do not move"):
-        departure(PLATE, symmetric, HERTZ, 2e-4, 8)
+        driven(symmetric, 8).departure(2e-4)
 
 
 @pytest.mark.parametrize(("support", "x", "expected"), [("pinned", 0.2, 3.0), ("clamped", 0.003, 1.0)])
 def test_the_contact_lines_slope_converges_inside_with_order_three_and_at_a_wall_with_one(support, x, expected):
     beam = structs.replace(PLATE, supports=(support, "pinned"))
-    errors = [contact_line_error(beam, 3, n, x) for n in (20, 40, 80)]
+    line, scene = "chain.contact_line_error", Scene(name="line", beam=beam)
+    sizes = [{"segments": n, "mode": 3, "x": x} for n in (20, 40, 80)]
+    errors = [evaluate(line, size, scene, SolutionCache(beam)) for size in sizes]
     assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(expected, abs=0.6)

@@ -9,7 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from reference.motor import bounces
 
-from verify.exact.contact import impact, layer
+from verify.cases import layer
+from verify.cases.landing import landing_phase
+from verify.cases.restitution import contact_time, restitution
 
 ANGLES, SPEEDS, COMPLIANCES = st.floats(0.05, 3.0), st.floats(-0.9, 1.3), st.floats(0.01, 20.0)
 
@@ -75,7 +77,7 @@ def test_force_and_efficiency_are_integrals_over_the_contact(phi, r):
 
 @pytest.mark.parametrize("ratio", [1.5, 2.0, 37.3, 2.71e5])
 def test_a_mass_lands_where_its_parabola_meets_the_surface(ratio):
-    lands, leaves = impact.landing_phase(ratio), asin(1.0 / ratio)
+    lands, leaves = landing_phase(ratio), asin(1.0 / ratio)
     if ratio < 10.0:
         assert lands == pytest.approx(bounces(ratio, 0.0, 3)[0].phase, abs=1e-12)
     time = lands - leaves
@@ -92,5 +94,5 @@ def test_restitution_and_contact_time_are_the_published_formulas_in_forty_digits
         omega = mp.sqrt(mp.mpc(1 - beta**2))
         time = -mp.j * mp.log(beta + mp.j * omega) * 2 / omega  # its tangent is 2 beta omega / (beta^2 - omega^2)
         expected = float(mp.exp(-beta * time).real)
-    assert impact.restitution(zeta) == pytest.approx(expected, rel=4e-14)
-    assert impact.contact_time(zeta) == pytest.approx(float(time.real), rel=4e-14)
+    assert restitution(zeta) == pytest.approx(expected, rel=4e-14)
+    assert contact_time(zeta) == pytest.approx(float(time.real), rel=4e-14)

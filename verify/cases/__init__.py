@@ -1,0 +1,1 @@
+"""Problems whose answer is known without this package, one file a problem; `table.CASES` has all of them by name."""

@@ -1,0 +1,13 @@
+"""Beams of the cases whose dimensionless figures hold for any beam."""
+
+from math import sqrt
+
+from verify.problem.beam import Beam
+
+CANTILEVER = Beam(
+    length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
+)
+EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CANTILEVER.mass_per_length)
+"""EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
+STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+HERTZ = 4276.0  # of the wave on `STRIP`: a wavelength of 46 mm, 46 thicknesses

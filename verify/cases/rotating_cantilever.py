@@ -1,0 +1,25 @@
+"""Rotating cantilever: lead-lag frequencies omega sqrt(rho A L^4 / EI), hub speed in the same unit.
+
+Their squares are those of the flapping frequencies less that of the speed. Order 2, due to the centrifugal force. At a
+speed of 12 mode 1 would be 3.516 without that force; it flaps at 13.17.
+"""
+
+from dataclasses import replace
+
+from verify.cases.base import case
+from verify.cases.beams import CANTILEVER, OMEGA
+from verify.chain.kinematics import at_rest
+from verify.chain.linearisation import linearise
+from verify.chain.system import build_system
+from verify.validation import check_integer
+
+SERIES = "A. D. Wright et al., J. Appl. Mech. 49 (1982) 197: power series, summed in 60 digits"
+
+
+@case("rotating-cantilever-1", 5.42704927779, 5e-12, SERIES, mode=1, speed=12.0)
+@case("rotating-cantilever-3", 78.70492478, 5e-9, SERIES, mode=3, speed=12.0)
+def frequency(mode: int, speed: float, count: int = 80) -> float:
+    """Frequency of rigid links, linearised. Raises InputError for more modes than links."""
+    check_integer("count", count, mode)
+    system = replace(build_system(CANTILEVER, count), hub_rate=speed * OMEGA)
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
