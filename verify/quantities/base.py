@@ -2,7 +2,8 @@
 
 The signature of the function is the schema of the quantity: an annotation carries type, limits and description, a
 default value makes an argument optional, and a parameter annotated with a `msgspec.Struct` is an option group whose
-fields become arguments of the quantity. `evaluate` supplies parameters named `scene` and `cache`.
+fields become arguments of the quantity. `evaluate` supplies parameters named `scene` and `cache`. `figures` registers
+the attributes of a result.
 
     @quantity("drive.rule_frequency", unit="Hz", reads=("beam",))
     def rule_frequency(scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two")] = 22):
@@ -12,14 +13,16 @@ Nothing here imports numpy.
 """
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
 from math import isfinite, isnan
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import msgspec
 from msgspec import Meta
 
-from verify.analysis.solution_cache import Bracket
+from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.blas import one_blas_thread
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
@@ -28,7 +31,6 @@ from verify.registry import Registry
 from verify.validation import python_scalar
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
     from verify.scene.model import Scene as Scene  # noqa: PLC0414
 else:
     Scene = Any
@@ -42,9 +44,9 @@ class Estimate(float):
 
     def __new__(cls, value: float, error: float = 0.0) -> "Estimate":
         """`error` in the unit of the value; a copy or an unpickled value sets it later."""
-        one = super().__new__(cls, value)
-        one.error = float(error)
-        return one
+        estimate = super().__new__(cls, value)
+        estimate.error = float(error)
+        return estimate
 
 
 Value: TypeAlias = float | complex | Bracket  # type of an evaluated quantity
@@ -61,34 +63,36 @@ UNITS = {"resistance": "ohm", "inductance": "H", "capacitance": "F", "peak": "1"
 
 
 class Quantity:
-    """A named quantity of interest. `@quantity` makes and registers it."""
+    """A named quantity of interest. `@quantity` and `figures` make and register it."""
 
     def __init__(
         self,
-        function: Callable[..., Value],
+        function: Callable[..., Any],
         name: str,
         unit: str,
         summary: str = "",
         reads: Sequence[str] = TABLES,
         devices: bool = False,
+        read: Callable[[Any], Value] = lambda value: value,
     ) -> None:
         """`reads`: tables of a scene on which the value depends; `devices`: whether the quantity models drive.device.
 
-        `summary` replaces the first paragraph of the function's docstring.
+        `summary` replaces the first paragraph of the function's docstring; `read` maps the function's result to the
+        value.
         """
         self.name, self.unit, self.reads, self.devices = name, unit, tuple(reads), devices
         self.summary = summary or " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
-        self.function = function
+        self.function, self.read = function, read
         parameters = inspect.signature(function).parameters
         self._supplied = [name for name in ("scene", "cache") if name in parameters]
         self._groups: dict[str, type[msgspec.Struct]] = {}
         fields: list[Any] = []
-        for parameter in (one for name, one in parameters.items() if name not in self._supplied):
+        for parameter in (parameters[name] for name in parameters if name not in self._supplied):
             kind = parameter.annotation
             if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
                 self._groups[parameter.name] = kind
-                own = msgspec.structs.fields(kind)
-                fields += [(one.name, one.type, *(() if one.required else (one.default,))) for one in own]
+                options = msgspec.structs.fields(kind)
+                fields += [(f.name, f.type, *(() if f.required else (f.default,))) for f in options]
             else:
                 default = () if parameter.default is inspect.Parameter.empty else (parameter.default,)
                 fields.append((parameter.name, kind, *default))
@@ -101,13 +105,11 @@ class Quantity:
         """The arguments as plain data: name, type, whether required, default, description."""
         entries = []
         for field in msgspec.structs.fields(self.schema):
-            among = extra_of(field.type, MODEL_NAME)
-            one: dict[str, Any] = {
-                "name": field.name,
-                "type": " | ".join(among.names()) if among else type_name(field.type),
-            }
-            one |= {"required": field.required, "default": None if field.required else field.default}
-            entries.append(one | {"description": description_of(field.type)})
+            models = extra_of(field.type, MODEL_NAME)
+            kind = " | ".join(models.names()) if models else type_name(field.type)
+            default = None if field.required else field.default
+            entry = {"name": field.name, "type": kind, "required": field.required, "default": default}
+            entries.append(entry | {"description": description_of(field.type)})
         return entries
 
     def bind(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
@@ -115,11 +117,11 @@ class Quantity:
         data = {name: _native(value, name) for name, value in arguments.items()}
         required = {field.name for field in msgspec.structs.fields(self.schema) if field.required}
         for name, kind in self.types.items():
-            among = extra_of(kind, MODEL_NAME)
-            if among is not None and isinstance(data.get(name), str):
-                among.check(data[name], name)
-            elif among is not None and name in required - set(data) and set(data) <= set(self.types):
-                raise InputError(f"{name} is missing: give one of {', '.join(among.names())}")
+            models = extra_of(kind, MODEL_NAME)
+            if models is not None and isinstance(data.get(name), str):
+                models.check(data[name], name)
+            elif models is not None and name in required - set(data) and set(data) <= set(self.types):
+                raise InputError(f"{name} is missing: give one of {', '.join(models.names())}")
             if name in data and isinstance(data[name], int | float) and entry_of(kind) is not None:
                 data[name] = [data[name]]
         checked = convert(data, self.schema)
@@ -132,37 +134,68 @@ class Quantity:
 
     def unit_of(self, arguments: Mapping[str, Any]) -> str:
         """Its unit; where that depends on an argument as resistance or inductance, the unit for these arguments."""
-        values = {one.name: one.default for one in msgspec.structs.fields(self.schema)} | dict(arguments)
+        values = {field.name: field.default for field in msgspec.structs.fields(self.schema)} | dict(arguments)
         units = [UNITS[value] for value in values.values() if isinstance(value, str) and value in UNITS]
         return units[0] if units and " or " in self.unit else self.unit
 
     @one_blas_thread()
-    def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
+    def evaluate(self, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache) -> Value:
         """The value for arguments that are plain data. Raises InputError."""
         bound = self.bind(arguments)
-        accepts = [name for one in self._groups.values() for name in getattr(one, "accepts", ())]
-        if not self.devices and "beam" in self.reads and (also := scene.beside) and also not in accepts:
-            at = scene.devices[0].position if scene.devices else scene.shunts[0][0]
+        accepted = [name for group in self._groups.values() for name in getattr(group, "accepts", ())]
+        if not self.devices and "beam" in self.reads and (part := scene.beside) and part not in accepted:
+            x = scene.devices[0].position if scene.devices else scene.shunts[0][0]
             raise InputError(
-                f"quantity = {self.name!r} does not model {also}, and the scene has one at {at:g} m: leave {also} out, "
+                f"quantity = {self.name!r} does not model {part}, and the scene has one at {x:g} m: leave {part} out, "
                 "or use a quantity of the steady wave"
             )
-        length = scene.beam.length
-        for name, x in arguments.items():
-            if (
-                extra_of(self.types[name], PLACE)
-                and x is not None
-                and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING)
-            ):
+        for name in (name for name in arguments if extra_of(self.types[name], PLACE)):
+            x, length = arguments[name], scene.beam.length
+            if x is not None and not -ROUNDING * length <= x <= length * (1.0 + ROUNDING):
                 raise InputError(f"{name} = {x!r} lies off the beam: give a position between 0 and {length!r} m")
         supplied = {"scene": scene, "cache": cache}
-        value = python_scalar(self.function(**{name: supplied[name] for name in self._supplied}, **bound))
+        result = self.function(**{name: supplied[name] for name in self._supplied}, **bound)
+        value = python_scalar(self.read(result))
         if not isinstance(value, float | int | complex | Bracket):
             raise InputError(f"quantity = {self.name!r} returns {shown(value)}: return a number or a Bracket")
         return value
 
 
-QUANTITIES: Registry[Quantity] = Registry("quantity", "verify.quantities")
+MODULES = {
+    "modes": ("mode", "drive", "beam"),
+    "waves": ("wave",),
+    "drive": ("drive", "wave"),
+    "actuator": ("actuator",),
+    "shunt": ("shunt",),
+    "slider": ("slider", "motion"),
+    "motor": ("motor",),
+    "control": ("control",),
+    "chain": ("chain",),
+    "contact": ("contact", "friction", "slider"),
+    "identify": ("identify",),
+    "study": ("study",),
+}
+"""Families of quantities, the first words of their names, by the module of this package that registers them."""
+
+
+class Quantities(Registry[Quantity]):
+    """The quantities; the modules of a family are imported when one of its names is looked up, all for a list."""
+
+    def __contains__(self, name: object) -> bool:
+        self._load(str(name).partition(".")[0])
+        return super().__contains__(name)
+
+    def __iter__(self) -> Iterator[str]:
+        self._load()
+        return super().__iter__()
+
+    def _load(self, family: str = "") -> None:
+        for module, families in MODULES.items():
+            if not family or family in families:
+                import_module(f"verify.quantities.{module}")
+
+
+QUANTITIES = Quantities("quantity", "verify.quantities")
 """The quantities of this package, those registered in this process, and entry points of `verify.quantities`."""
 
 
@@ -173,7 +206,24 @@ def quantity(
     return lambda function: QUANTITIES.register(Quantity(function, name, unit, summary, reads, devices))
 
 
-def evaluate(name: str, arguments: Mapping[str, Any], scene: Scene, cache: "SolutionCache") -> Value:
+def figures(
+    family: str, result: Callable[..., Any], *, reads: Sequence[str] = TABLES, devices: bool = False
+) -> Callable[..., Quantity]:
+    """A function that registers a figure of `result`: a row of name, unit, sentence and attribute (default: the name).
+
+    The signature of `result` is the schema. `read` in place of an attribute maps the result to the value.
+    """
+
+    def figure(
+        name: str, unit: str, sentence: str, attribute: str = "", read: Callable[[Any], Value] | None = None
+    ) -> Quantity:
+        read = read or attrgetter(attribute or name)
+        return QUANTITIES.register(Quantity(result, f"{family}.{name}", unit, sentence, reads, devices, read))
+
+    return figure
+
+
+def evaluate(name: str, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache) -> Value:
     """The value of a quantity. `arguments` is plain data as in a scene file; unknown ones raise InputError."""
     return QUANTITIES.named(name).evaluate(arguments, scene, cache)
 
@@ -205,11 +255,12 @@ def describe(*words: str) -> list[dict[str, Any]]:
 
     Raises InputError where no quantity matches.
     """
-    quantities = []
-    for one in QUANTITIES.values():
-        text = " ".join((one.name, one.summary, one.unit, *one.schema.__struct_fields__)).casefold()
-        if all(word.casefold() in text for word in words):
-            quantities.append({"name": one.name, "unit": one.unit, "summary": one.summary, "arguments": one.arguments})
+    quantities = [
+        {"name": q.name, "unit": q.unit, "summary": q.summary, "arguments": q.arguments}
+        for q in QUANTITIES.values()
+        for text in [" ".join((q.name, q.summary, q.unit, *q.schema.__struct_fields__)).casefold()]
+        if all(word.casefold() in text for word in words)
+    ]
     if not quantities:
         remedy = "leave a word out" if len(words) > 1 else "give another word, or none for all"
         raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, {remedy}")
@@ -239,7 +290,7 @@ def as_text(value: Value, digits: int = 12) -> str:
 def _native(value: Any, name: str) -> Any:
     """Convert numpy's numbers to Python's. Raises InputError for a value that is not finite."""
     if isinstance(value, list | tuple | range):
-        return [_native(one, name) for one in value]
+        return [_native(item, name) for item in value]
     value = python_scalar(value)
     if isinstance(value, float) and not isfinite(value):
         raise InputError(f"{name} = {value!r}: give a finite number")

@@ -1,16 +1,15 @@
 """Quantities of identification: intervals of the section [identify], and their coverage over synthetic data."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 from msgspec.json import encode
 from msgspec.structs import replace
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
+from verify.identify import fit
 from verify.quantities.base import TABLES, Scene, quantity
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
 
 READS = (*TABLES, "identify")
 Name = Annotated[str, Meta(description="fitted parameter of [identify]")]
@@ -34,11 +33,9 @@ def _study(scene: Scene, parameter: str, *, synthetic: bool = False) -> Any:
 
 @quantity("identify.interval", unit="SI", reads=READS)
 def interval(
-    scene: Scene, cache: "SolutionCache", *, parameter: Name, side: Side = "half-width", until: Until | None = None
+    scene: Scene, cache: SolutionCache, *, parameter: Name, side: Side = "half-width", until: Until | None = None
 ) -> float:
     """95 % interval, estimate or standard deviation of a parameter identified from data, in its SI unit."""
-    from verify.identify import fit
-
     study = _study(scene, parameter, synthetic=until is not None or side == "cramer-rao")
     if until is not None:
         (first, last), steps = study.synthetic.span, study.synthetic.points - 1
@@ -67,14 +64,12 @@ def interval(
 @quantity("identify.coverage", unit="1", reads=READS)
 def coverage(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     *,
     parameter: Name,
     repeats: Annotated[int, Meta(ge=100, le=100_000, description="number of fits")] = 2000,
 ) -> float:
     """Fraction of fits to synthetic data whose 95 % interval by Fisher information contains the true value."""
-    from verify.identify import fit
-
     study = _study(scene, parameter, synthetic=True)
     own, model = study.synthetic, study.data(scene)[0]
     key: Any = ("coverage", encode(study), scene.beam, scene.slider, scene.drive, repeats)  # of all its parameters

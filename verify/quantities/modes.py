@@ -2,20 +2,22 @@
 
 from functools import partial
 from math import pi, sqrt
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from msgspec import Meta
 
-from verify.analysis.solution_cache import Bracket
+from verify.analysis import comparison
+from verify.analysis.comparison import asymptotic_order, node_weights, zeros
+from verify.analysis.sizing import sufficient_size
+from verify.analysis.solution_cache import Bracket, SolutionCache
+from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
-from verify.exact import closed_forms
+from verify.exact import closed_forms, plate
+from verify.exact.error_laws import law_of, leading_error
 from verify.linear.registry import MEAN, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
 from verify.validation import Relative, check_sizes
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
 
 BEAM = ("beam",)
 Reading = Annotated[
@@ -24,7 +26,7 @@ Reading = Annotated[
 
 
 @quantity("mode.frequency", unit="Hz", reads=BEAM)
-def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
+def frequency(cache: SolutionCache, of: opt.OneModeOrMean) -> float:
     """Natural frequency of one mode."""
     if of.count is None:
         return cache.exact_hz(of.mode, of.theory)
@@ -32,7 +34,7 @@ def frequency(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 
 
 @quantity("mode.frequency_error", unit="1", reads=BEAM)
-def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
+def frequency_error(cache: SolutionCache, of: opt.OneModeOrMean) -> float:
     """Signed error against the exact frequency of the same theory; model = analytic: theory over Euler-Bernoulli."""
     if of.count is not None:
         return cache.frequency_error(of.model, of.count, of.mode, of.settings)
@@ -43,50 +45,42 @@ def frequency_error(cache: "SolutionCache", of: opt.OneModeOrMean) -> float:
 @quantity("mode.plate_error", unit="1", reads=BEAM)
 def plate_error(scene: Scene, *, mode: opt.Mode) -> float:
     """Relative frequency difference of a thin plate with free long edges from Euler-Bernoulli theory."""
-    from verify.exact.plate import plate_error
-
-    return plate_error(scene.beam, mode)
+    return plate.plate_error(scene.beam, mode)
 
 
 @quantity("mode.law_ratio", unit="1", reads=BEAM)
 def law_ratio(
-    scene: Scene, cache: "SolutionCache", *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
+    scene: Scene, cache: SolutionCache, *, model: opt.DiscreteModel, mode: opt.Mode, count: opt.Size
 ) -> float:
     """Frequency error over its leading term: fem mu^4/1440, segment mu^4 (-1/1440 + c/(12 N)); mu = beta l."""
-    from verify.exact.error_laws import law_of, leading_error
-
     law_of(model)
     closed_forms.check_uniform(scene.beam)
     return cache.frequency_error(model, count, mode) / leading_error(model, scene.beam.supports, mode, count)
 
 
 @quantity("mode.shape_error", unit="1", reads=BEAM)
-def shape_error(cache: "SolutionCache", of: opt.OneDiscreteMode, *, reading: Reading | None = None) -> float:
+def shape_error(cache: SolutionCache, of: opt.OneDiscreteMode, *, reading: Reading | None = None) -> float:
     """Relative L2 error of the mass-normalised deflection at the model's nodes."""
     return cache.shape_error(of.model, of.count, of.mode, reading, of.settings)
 
 
 @quantity("mode.curvature_error", unit="1", reads=BEAM)
-def curvature_error(cache: "SolutionCache", of: opt.OneDiscreteMode) -> float:
+def curvature_error(cache: SolutionCache, of: opt.OneDiscreteMode) -> float:
     """Relative L2 error of the curvature at joints or Gauss points."""
-    from verify.analysis.comparison import node_weights, shape_error
-
     modes = cache.modes(of.model, of.count, of.mode, of.settings)
     exact = cache.exact_shape(of.mode, modes.curvature_points, 2, of.theory)
     computed = modes.curvatures()[cache.paired_index(of.model, of.count, of.mode, of.settings)]
-    return shape_error(exact, computed, node_weights(modes.curvature_points))
+    return comparison.shape_error(exact, computed, node_weights(modes.curvature_points))
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
 def node_position(
-    cache: "SolutionCache",
+    cache: SolutionCache,
     of: opt.OneMode,
     *,
     node: Annotated[int, Meta(ge=1, description="number of the node from the left, without the ends")] = 1,
 ) -> float:
     """Position of a node of a mode, from the left end."""
-    from verify.analysis.comparison import zeros
-
     shape: Any = partial(cache.exact_shape, of.mode, theory=of.theory)
     if of.count is not None:
         modes = cache.modes(of.model, of.count, of.mode, of.settings)
@@ -118,10 +112,8 @@ class OrdersOrMean(Orders, frozen=True, kw_only=True):
 
 
 @quantity("mode.order", unit="1", reads=BEAM)
-def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
+def order(scene: Scene, cache: SolutionCache, of: OrdersOrMean) -> float:
     """Observed order of the frequency error in N; an error outside the asymptotic range."""
-    from verify.analysis.comparison import asymptotic_order
-
     expected = None
     if of.model != MEAN:
         expected = MODELS.named(of.model).build(scene.beam, max(of.counts), **dict(of.settings)).expected_order()
@@ -130,23 +122,21 @@ def order(scene: Scene, cache: "SolutionCache", of: OrdersOrMean) -> float:
 
 
 @quantity("mode.shape_order", unit="1", reads=BEAM)
-def shape_order(cache: "SolutionCache", of: Orders, *, reading: Reading | None = None) -> float:
+def shape_order(cache: SolutionCache, of: Orders, *, reading: Reading | None = None) -> float:
     """Observed order of the shape error in N; an error outside the asymptotic range."""
-    from verify.analysis.comparison import asymptotic_order
-
     errors = [cache.shape_error(of.model, n, of.mode, reading, of.settings) for n in of.counts]
     return asymptotic_order(of.counts, errors)
 
 
 @quantity("mode.bracket", unit="Hz", reads=BEAM)
-def bracket(cache: "SolutionCache", options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
+def bracket(cache: SolutionCache, options: opt.ModelOptions, *, mode: opt.Mode, count: opt.Size) -> Bracket:
     """Segments below, fem above the exact frequency of a bare uniform beam; clamped ends with wall = half alone."""
     return cache.bracket(mode, count, options.settings)
 
 
 @quantity("mode.count_needed", unit="1", reads=BEAM)
 def count_needed(
-    cache: "SolutionCache",
+    cache: SolutionCache,
     options: opt.ModelOptions,
     *,
     model: opt.DiscreteModel,
@@ -154,16 +144,12 @@ def count_needed(
     error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
 ) -> float:
     """Sufficient number of segments or elements: for this and every larger number the error is at most `error`."""
-    from verify.analysis.sizing import sufficient_size
-
     return sufficient_size(cache, model, mode, error, opt.check_settings(model, options.settings)).count
 
 
 @quantity("mode.stock_difference", unit="1", reads=BEAM)
-def stock_difference(scene: Scene, cache: "SolutionCache", *, mode: opt.Mode, count: opt.Size) -> float:
+def stock_difference(scene: Scene, cache: SolutionCache, *, mode: opt.Mode, count: opt.Size) -> float:
     """Relative frequency difference of scikit-fem's own Hermite element and solver from model = fem."""
-    from verify.elements.stock import stock_frequency_hz
-
     return stock_frequency_hz(scene.beam, mode, count) / cache.frequency_hz("fem", count, mode) - 1.0
 
 

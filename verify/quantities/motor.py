@@ -1,21 +1,20 @@
 """Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import msgspec
 from msgspec import Meta
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.formatting import with_error, with_unit
+from verify.motor.curves import REASONS, Transient, no_load, transient
+from verify.motor.periodic_orbit import periodic_orbit
+from verify.motor.steady_state import Figure, MotorCase, SteadyState, steady_state
 from verify.quantities import options as opt
 from verify.quantities.base import Estimate, Scene, quantity
 from verify.validation import unit
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.motor.curves import Transient
-    from verify.motor.steady_state import Figure, MotorCase, SteadyState
 
 Speed = Annotated[float, unit("m/s"), Meta(description="prescribed speed of the slider along +x, m/s")]
 
@@ -30,10 +29,8 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
     modal_damping: opt.ModalDamping | None = None
     steps_per_period: Annotated[int, Meta(ge=4, description="least number; stiff contact takes more")] = 61
 
-    def case(self, scene: Scene) -> "MotorCase":
+    def case(self, scene: Scene) -> MotorCase:
         """The motor of a scene. Raises InputError where the scene has none."""
-        from verify.motor.steady_state import MotorCase
-
         opt.check_count(self.model, self.count)
         opt.check_theory("a motor", self.theory)
         if scene.slider is None or scene.slider.contact is None:
@@ -45,7 +42,7 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         return MotorCase(beam=there.beam, forces=there.loads, frequency_hz=hertz, **settings)
 
 
-def cached(cache: "SolutionCache", function: Callable[..., Any], *arguments: Any) -> Any:
+def cached(cache: SolutionCache, function: Callable[..., Any], *arguments: Any) -> Any:
     """The value of a function, computed once for equal arguments."""
     key = (function, *arguments)
     if key not in cache.motors:
@@ -58,11 +55,8 @@ class Prescribed(MotorOptions, frozen=True, kw_only=True):
 
     periods: Annotated[int, Meta(ge=96, description="most drive periods until the means converge")] = 12_500
 
-    def state(self, scene: Scene, cache: "SolutionCache", speed: float, *figures: "Figure") -> "SteadyState":
+    def state(self, scene: Scene, cache: SolutionCache, speed: float, *figures: "Figure") -> SteadyState:
         """Steady state at a speed, m/s. Raises InputError where one of `figures` has not converged."""
-        from verify.motor.curves import REASONS
-        from verify.motor.steady_state import steady_state
-
         state: SteadyState = cached(cache, steady_state, self.case(scene), speed, self.periods)
         if missing := next((name for name in figures if not state.converged(name)), None):
             raise InputError(f"periods = {self.periods!r}: {REASONS[missing]}")
@@ -75,9 +69,7 @@ def _at_speed(
     """Register a quantity of the slider at a prescribed speed."""
 
     @quantity(f"motor.{name}", unit=unit, summary=f"{summary} at a prescribed speed.")
-    def at_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed, *, speed: Speed = 0.0) -> float:
-        from verify.motor.curves import REASONS
-
+    def at_speed(scene: Scene, cache: SolutionCache, motor: Prescribed, *, speed: Speed = 0.0) -> float:
         value = read(motor.state(scene, cache, speed, *figures))
         if value is None:
             raise InputError(f"speed = {speed!r} m/s: {REASONS[name]}")
@@ -88,7 +80,7 @@ def _mean(name: str) -> "Callable[[SteadyState], float]":
     return lambda at: Estimate(getattr(at.means, name), getattr(at.errors, name))
 
 
-def _power(at: "SteadyState") -> float:
+def _power(at: SteadyState) -> float:
     return Estimate(at.power, abs(at.speed) * at.errors.force)
 
 
@@ -103,16 +95,14 @@ _at_speed("friction_power", "W", "Power lost in friction and compliance", _mean(
 
 
 @quantity("motor.stall_force", unit="N")
-def stall_force(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> float:
+def stall_force(scene: Scene, cache: SolutionCache, motor: Prescribed) -> float:
     """Mean friction force on the slider at standstill."""
     return _mean("force")(motor.state(scene, cache, 0.0, "force"))
 
 
 @quantity("motor.no_load_speed", unit="m/s")
-def no_load_speed(scene: Scene, cache: "SolutionCache", motor: Prescribed) -> float:
+def no_load_speed(scene: Scene, cache: SolutionCache, motor: Prescribed) -> float:
     """No-load speed along +x of a heavy slider: the prescribed speed at which the mean friction force vanishes."""
-    from verify.motor.curves import no_load
-
     return float(cached(cache, no_load, motor.case(scene), motor.periods).speed)
 
 
@@ -121,26 +111,22 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
 
     periods: Annotated[int, Meta(ge=2, description="number of drive periods")] = 2000
 
-    def run(self, scene: Scene, cache: "SolutionCache") -> "Transient":
+    def run(self, scene: Scene, cache: SolutionCache) -> Transient:
         """The free run. Raises InputError where the slider leaves the beam."""
-        from verify.motor.curves import REASONS, transient
-
         free: Transient = cached(cache, transient, self.case(scene), self.periods)
         if not free.run.statistics.finished:
             raise InputError(f"periods = {self.periods!r}: {REASONS['left']}")
         return free
 
-    def check(self, free: "Transient") -> None:
+    def check(self, free: Transient) -> None:
         """Raise InputError, with the mean and its error, where a run has reached no steady state."""
-        from verify.motor.curves import REASONS
-
         if not free.converged:
             last = with_error(1e3 * free.speed, 1e3 * free.error)
             raise InputError(f"periods = {self.periods!r}: {REASONS['free speed']} (last quarter: {last} mm/s)")
 
 
 @quantity("motor.free_speed", unit="m/s")
-def free_speed(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
+def free_speed(scene: Scene, cache: SolutionCache, motor: FreeRun) -> float:
     """Mean speed of the free slider over the last quarter of a run; a light slider varies within a drive period."""
     free = motor.run(scene, cache)
     motor.check(free)
@@ -148,10 +134,8 @@ def free_speed(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
 
 
 @quantity("motor.start_time", unit="s")
-def start_time(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
+def start_time(scene: Scene, cache: SolutionCache, motor: FreeRun) -> float:
     """Time constant of the free slider's start: 1 - 1/e of the change to its final mean speed, without overshoot."""
-    from verify.motor.curves import REASONS
-
     free = motor.run(scene, cache)
     start = free.time_constant()
     if start.missing == "overshoot":
@@ -168,10 +152,8 @@ def start_time(scene: Scene, cache: "SolutionCache", motor: FreeRun) -> float:
 
 
 @quantity("motor.multiplier", unit="1")
-def multiplier(scene: Scene, cache: "SolutionCache", motor: MotorOptions, *, speed: Speed = 0.0) -> float:
+def multiplier(scene: Scene, cache: SolutionCache, motor: MotorOptions, *, speed: Speed = 0.0) -> float:
     """Largest Floquet multiplier of the periodic motion at a prescribed speed; stable below 1."""
-    from verify.motor.periodic_orbit import periodic_orbit
-
     return float(max(abs(cached(cache, periodic_orbit, motor.case(scene), speed).multipliers)))
 
 

@@ -1,12 +1,14 @@
 """Quantities of shunted actuators: damping of one mode, absorption of a wave by an actuator with an electrical load."""
 
 from math import pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
+from msgspec.structs import replace
 
 from verify.actuators.patch import Patch
+from verify.actuators.port import Port
 from verify.actuators.shunt import Circuit, Load, ShuntedMode, absorbing_load
 from verify.actuators.transducers import Longitudinal
 from verify.errors import InputError
@@ -14,8 +16,9 @@ from verify.linear.registry import EXACT, MODELS
 from verify.quantities import options as opt
 from verify.quantities.actuator import scene_actuator
 from verify.quantities.base import Place, Scene, quantity
-from verify.quantities.waves import FromRightEnd
-from verify.validation import Relative, check_number, unit
+from verify.quantities.waves import FromRightEnd, ending_at
+from verify.validation import Relative, unit
+from verify.waves.impedance_matching import Ending
 
 Hertz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the mode with short-circuited electrodes")]
 Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
@@ -48,22 +51,13 @@ class ShuntOptions(msgspec.Struct, frozen=True, kw_only=True):
         return mode, mode.optimum(self.circuit, None if self.negative is None else self.negative * mode.capacitance)
 
 
-def _part(load: Load, figure: str) -> float:
-    """Resistance (ohm) or inductance (H) of an optimum load. Raises InputError where it has none."""
-    value: float | None = getattr(load, figure)
-    if value is None:
-        raise InputError(f"{figure}: the optimum {load!r} has none, choose another circuit")
-    return value
-
-
 @quantity("shunt.peak", unit="1", reads=("beam", "drive"))
 def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, inductance: Henry | None = None) -> float:
     """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
     mode, load = shunt.best(scene)
     if inductance is not None:
-        _part(load, "inductance")
-    own = {"resistance": resistance or load.resistance, "inductance": inductance or load.inductance}
-    return mode.peak(msgspec.structs.replace(load, **own))
+        load = replace(load, inductance=load.part("inductance") and inductance)
+    return mode.peak(replace(load, resistance=resistance or load.resistance))
 
 
 @quantity("shunt.optimum", unit="1, ohm or H", reads=("beam", "drive"))
@@ -78,21 +72,15 @@ def optimum(
 ) -> float:
     """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
     mode, load = shunt.best(scene)
-    if figure == "peak":
-        return mode.peak(load)
-    if figure == "loss_factor":
-        stiffness = complex(mode.stiffness(load, mode.omega))
-        return stiffness.imag / stiffness.real
-    return _part(load, figure)
+    if figure in ("peak", "loss_factor"):
+        return float(getattr(mode, figure)(load))
+    return load.part(figure)
 
 
-def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tuple[Any, Any, Load, float]:
+def _absorber(scene: Scene, position: float, frequency_hz: float | None) -> tuple[Port, Ending, Load, float]:
     """(port, beam behind it, matched load, omega) of the scene's actuator. Raises InputError."""
-    from verify.waves.impedance_matching import ending
-
-    check_number("position", position, "metres from the right end", below=scene.beam.length)
-    hertz = opt.drive_frequency(scene, frequency_hz)
-    end, omega = ending(scene.beam, hertz, position, scene.beam.supports[1]), 2.0 * pi * hertz
+    end = ending_at(scene, position=position, frequency_hz=frequency_hz)
+    omega = 2.0 * pi * opt.drive_frequency(scene, frequency_hz)
     port = scene_actuator(scene, Longitudinal).port(omega)
     return port, end, absorbing_load(port, end.matched, omega), omega
 
@@ -102,7 +90,7 @@ def absorber(
     scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None, figure: Figure = "resistance"
 ) -> float:
     """Series load with which the scene's actuator near the right end absorbs a wave: its resistance or inductance."""
-    return _part(_absorber(scene, position, frequency_hz)[2], figure)
+    return _absorber(scene, position, frequency_hz)[2].part(figure)
 
 
 @quantity("shunt.reflection", unit="1", reads=("beam", "drive"), devices=True)
@@ -114,8 +102,6 @@ def reflection(
     detuning: Annotated[Relative, Meta(gt=-1, description="relative error of the inductance")] = 0.0,
 ) -> float:
     """Reflection Gamma at the scene's actuator near the right end with the matched load, its inductance detuned."""
-    from verify.waves.impedance_matching import reflection
-
     port, end, load, omega = _absorber(scene, position, frequency_hz)
-    load = msgspec.structs.replace(load, inductance=_part(load, "inductance") * (1.0 + detuning))
-    return reflection(port.loaded_impedance(load.admittance(omega)), end)
+    load = replace(load, inductance=load.part("inductance") * (1.0 + detuning))
+    return end.reflection(port.loaded_impedance(load.admittance(omega)))

@@ -1,23 +1,28 @@
 """Quantities in time: a slider on the driven beam, energy balance and coupling, and the beam without slider."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options
+from verify.analysis.comparison import asymptotic_order, relative_error
+from verify.analysis.solution_cache import SolutionCache
+from verify.dynamics.arguments import Excitation, Keep, Step
+from verify.dynamics.result import EnergyBalance, Motion
+from verify.dynamics.simulate import simulate
+from verify.dynamics.step_control import CONVERGED
 from verify.errors import InputError
+from verify.linear.positions import positions_on
 from verify.linear.registry import MODELS
+from verify.motor import travelling_wave
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, quantity
+from verify.travelling_wave import measure_series
 from verify.validation import check_sizes, unit
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.dynamics.arguments import Step
-    from verify.dynamics.result import EnergyBalance, Motion
+from verify.waves.window import check_span, check_waves
 
 Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m")]
@@ -63,18 +68,14 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
-    def time_step(self, scene: Scene) -> "Step":
+    def time_step(self, scene: Scene) -> Step:
         """The time step, by default by the scene's number in a period."""
-        from verify.dynamics.arguments import Step
-
         steps = scene.motion.steps_per_period if scene.motion and self.step is None else None
         return Step(seconds=self.step, per_period=steps)
 
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.dynamics.arguments import Excitation
-
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if motion is None else by.time or motion.duration
     if time is None:
@@ -96,10 +97,8 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     return {**driven, **own, "modal_damping": damping}
 
 
-def _simulated(cache: "SolutionCache", arguments: dict[str, Any]) -> "Motion":
+def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> Motion:
     """A simulation, computed once for equal arguments."""
-    from verify.dynamics.simulate import simulate
-
     key = tuple(arguments.items())
     if key not in cache.motions:
         cache.motions[key] = simulate(**arguments, progress=cache.progress)
@@ -108,17 +107,14 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any]) -> "Motion":
 
 def slider_run(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     by: TimeOptions,
     slider: SliderOptions,
     *,
     reverse: bool = False,
     at: tuple[float, ...] = (),
-) -> "Motion":
+) -> Motion:
     """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
-    from verify.dynamics.arguments import Keep
-    from verify.dynamics.step_control import CONVERGED
-
     arguments = motion_arguments(scene, by)
     if reverse:
         own = arguments["excitation"]
@@ -138,7 +134,7 @@ def _of_run(name: str, unit: str, summary: str) -> None:
     """Register an attribute of the motion as a quantity."""
 
     @quantity(f"slider.{name}", unit=unit, summary=summary)
-    def of_run(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+    def of_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
         return float(getattr(slider_run(scene, cache, by, slider), name))
 
 
@@ -150,7 +146,7 @@ _of_run("mean_surface_speed", "m/s", "Mean tangential velocity of the surface un
 
 
 @quantity("slider.reversal", unit="1")
-def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+def reversal(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with reversed drive phases over displacement; negative where the slider reverses."""
     there = slider_run(scene, cache, by, slider).displacement
     back = slider_run(scene, cache, by, slider, reverse=True).displacement
@@ -160,7 +156,7 @@ def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Slid
 @quantity("slider.order", unit="1")
 def order(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     by: TimeOptions,
     slider: SliderOptions,
     *,
@@ -168,7 +164,6 @@ def order(
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
     """Observed order of the slider's displacement: in N (reference: exact beam) or in the step (a sixteenth of it)."""
-    from verify.analysis.comparison import asymptotic_order, relative_error
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
@@ -192,12 +187,12 @@ def order(
 
 
 @quantity("slider.deflection", unit="m")
-def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
+def deflection(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
     """Deflection of the beam at x at the end of the run, with the slider in contact."""
     return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
 
 
-def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
+def _energy_balance(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> EnergyBalance:
     run = slider_run(scene, cache, by, slider)
     if run.energy is None or run.end.steady:
         raise InputError("start = 'steady': the energy balance needs a run from rest, give start = 'rest'")
@@ -207,7 +202,7 @@ def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slide
 @quantity("slider.energy", unit="J")
 def energy(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     by: TimeOptions,
     slider: SliderOptions,
     *,
@@ -222,7 +217,7 @@ def energy(
 
 
 @quantity("slider.imbalance", unit="1")
-def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+def imbalance(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
     """Residual of the energy balance of beam and slider in a run from rest, over the work of the forces."""
     balance = _energy_balance(scene, cache, by, slider)
     if not balance.drive_work:
@@ -233,7 +228,7 @@ def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: Sli
 @quantity("slider.coupling_size", unit="1")
 def coupling_size(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     *,
     of: Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")],
 ) -> float:
@@ -257,21 +252,14 @@ def terminal_speed(
     kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
 ) -> float:
     """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
-    from verify.motor.travelling_wave import terminal_speed
-
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
-    return terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
+    return travelling_wave.terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
 
 
 @quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
-def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
+def reflection(scene: Scene, cache: SolutionCache, by: TimeOptions, *, window: Window) -> float:
     """Reflection Gamma in a window of the driven beam in time, without slider: two waves fitted to its phasors."""
     import numpy as np
-
-    from verify.dynamics.arguments import Keep
-    from verify.linear.positions import positions_on
-    from verify.travelling_wave import measure_series
-    from verify.waves.window import check_span, check_waves
 
     arguments, beam = motion_arguments(scene, by), scene.beam
     excitation = arguments["excitation"]

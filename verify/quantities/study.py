@@ -1,21 +1,19 @@
 """Numbers in the tables of a scene's studies, as an optimum or a share in a variance."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from msgspec import Meta
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.quantities.base import TABLES, Scene, quantity
 from verify.studies.base import OWN, result_of
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
 
 
 @quantity("study.value", unit="SI", reads=(*TABLES, *OWN), devices=True)
 def value(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     *,
     study: Annotated[str, Meta(description="name of its section, for instance optimise")],
     row: Annotated[str, Meta(description="first entry of the row")],
