@@ -15,13 +15,13 @@ from verify.chain.slider_on_chain import slide_on_chain
 from verify.dynamics.arguments import Excitation, Keep, Step
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
+from verify.estimate import Estimate, as_plain, as_text
 from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
-from verify.quantities.base import Estimate, as_plain, as_text
 from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
 from verify.studies.identify import Identify, Synthetic
 from verify.studies.motion import Motion

@@ -15,7 +15,7 @@ Nothing here imports numpy.
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
-from math import isfinite, isnan
+from math import isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -26,7 +26,7 @@ from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.blas import one_blas_thread
 from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
-from verify.formatting import with_error
+from verify.estimate import Value
 from verify.registry import Registry
 from verify.validation import python_scalar
 
@@ -37,19 +37,6 @@ else:
     """Stand-in for annotations, which `@quantity` evaluates; scenes import quantities."""
 
 
-class Estimate(float):
-    """A value with the error of its estimation, of which `verify measure` prints the digits that hold."""
-
-    error: float
-
-    def __new__(cls, value: float, error: float = 0.0) -> "Estimate":
-        """`error` in the unit of the value; a copy or an unpickled value sets it later."""
-        estimate = super().__new__(cls, value)
-        estimate.error = float(error)
-        return estimate
-
-
-Value: TypeAlias = float | complex | Bracket  # type of an evaluated quantity
 MODEL_NAME = "model name"  # annotation key of an argument that names a model (`options.model_name`)
 PLACE = "place"
 Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True, "unit": "m"})]
@@ -265,26 +252,6 @@ def describe(*words: str) -> list[dict[str, Any]]:
         remedy = "leave a word out" if len(words) > 1 else "give another word, or none for all"
         raise InputError(f"words = {shown(' '.join(words))}: no quantity matches, {remedy}")
     return quantities
-
-
-def as_plain(value: Value | None) -> Any:
-    """A value as JSON data: a number, {"re", "im"} or {"lower", "upper"}; an estimate without its error."""
-    if isinstance(value, complex):
-        return {"re": value.real, "im": value.imag}
-    if isinstance(value, Bracket):
-        return {"lower": value.lower, "upper": value.upper}
-    return float(value) if isinstance(value, Estimate) else value
-
-
-def as_text(value: Value, digits: int = 12) -> str:
-    """A value as text: '1.5', '1 +2i', '0.9 .. 1.1', '9.8 ± 0.2'."""
-    if isinstance(value, complex):
-        return f"{value.real:.{digits}g} {value.imag:+.{digits}g}i"
-    if isinstance(value, Bracket):
-        return f"{value.lower:.{digits}g} .. {value.upper:.{digits}g}"
-    if isinstance(value, Estimate) and value.error:
-        return with_error(value, value.error)
-    return "NaN" if isnan(value) else f"{value:.{digits}g}" if isfinite(value) else "infinity"
 
 
 def _native(value: Any, name: str) -> Any:

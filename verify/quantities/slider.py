@@ -10,7 +10,7 @@ from verify import options
 from verify.analysis.comparison import asymptotic_order, relative_error
 from verify.analysis.solution_cache import SolutionCache
 from verify.dynamics.arguments import Excitation, Keep, Step
-from verify.dynamics.result import EnergyBalance, Motion
+from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.dynamics.step_control import CONVERGED
 from verify.errors import InputError
@@ -19,7 +19,7 @@ from verify.linear.registry import MODELS
 from verify.motor import travelling_wave
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
-from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.base import Place, Scene, figures, quantity
 from verify.travelling_wave import measure_series
 from verify.validation import check_sizes, unit
 from verify.waves.window import check_span, check_waves
@@ -105,23 +105,16 @@ def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> Motion:
     return cache.motions[key]
 
 
-def slider_run(
-    scene: Scene,
-    cache: SolutionCache,
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    reverse: bool = False,
-    at: tuple[float, ...] = (),
-) -> Motion:
+def slider_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> Motion:
     """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
-    arguments = motion_arguments(scene, by)
-    if reverse:
-        own = arguments["excitation"]
-        backward = [replace(one, phase_deg=-one.phase_deg) for one in own.forces]
-        arguments["excitation"] = replace(own, forces=backward)
-    own = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
-    run = _simulated(cache, arguments | own)
+    return _slider_run(scene, cache, slider, motion_arguments(scene, by))
+
+
+def _slider_run(
+    scene: Scene, cache: SolutionCache, slider: SliderOptions, arguments: dict[str, Any], at: tuple[float, ...] = ()
+) -> Motion:
+    sliding = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
+    run = _simulated(cache, arguments | sliding)
     status = run.statistics
     if not status.finished:
         raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
@@ -130,27 +123,29 @@ def slider_run(
     return run
 
 
-def _of_run(name: str, unit: str, summary: str) -> None:
-    """Register an attribute of the motion as a quantity."""
-
-    @quantity(f"slider.{name}", unit=unit, summary=summary)
-    def of_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
-        return float(getattr(slider_run(scene, cache, by, slider), name))
-
-
-_of_run("displacement", "m", "Displacement of the scene's slider along +x at the end of the run.")
-_of_run("mean_speed", "m/s", "Mean speed of the slider along +x: displacement over duration.")
-_of_run("largest_friction", "N", "Largest friction force on the slider.")
-_of_run("mean_friction", "N", "Mean friction force on the slider along +x.")
-_of_run("mean_surface_speed", "m/s", "Mean tangential velocity of the surface under the slider.")
+slider = figures("slider", slider_run)
+slider("displacement", "m", "Displacement of the scene's slider along +x at the end of the run.")
+slider("mean_speed", "m/s", "Mean speed of the slider along +x: displacement over duration.")
+slider("largest_friction", "N", "Largest friction force on the slider.")
+slider("mean_friction", "N", "Mean friction force on the slider along +x.")
+slider("mean_surface_speed", "m/s", "Mean tangential velocity of the surface under the slider.")
+slider(
+    "imbalance",
+    "1",
+    "Residual of the energy balance of beam and slider in a run from rest, over the work of the forces.",
+    "energy_from_rest.imbalance",
+)
 
 
 @quantity("slider.reversal", unit="1")
 def reversal(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with reversed drive phases over displacement; negative where the slider reverses."""
-    there = slider_run(scene, cache, by, slider).displacement
-    back = slider_run(scene, cache, by, slider, reverse=True).displacement
-    return back / there if there else float("nan")
+    arguments = motion_arguments(scene, by)
+    drive = arguments["excitation"]
+    reversed_drive = replace(drive, forces=[replace(force, phase_deg=-force.phase_deg) for force in drive.forces])
+    back = _slider_run(scene, cache, slider, arguments | {"excitation": reversed_drive}).displacement
+    forth = _slider_run(scene, cache, slider, arguments).displacement
+    return back / forth if forth else float("nan")
 
 
 @quantity("slider.order", unit="1")
@@ -189,40 +184,20 @@ def order(
 @quantity("slider.deflection", unit="m")
 def deflection(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
     """Deflection of the beam at x at the end of the run, with the slider in contact."""
-    return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
+    return float(_slider_run(scene, cache, slider, motion_arguments(scene, by), at=(x,)).deflection[-1, 0])
 
 
-def _energy_balance(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> EnergyBalance:
-    run = slider_run(scene, cache, by, slider)
-    if run.energy is None or run.end.steady:
-        raise InputError("start = 'steady': the energy balance needs a run from rest, give start = 'rest'")
-    return run.energy
+Term = Annotated[
+    Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
+    Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
+]
 
 
 @quantity("slider.energy", unit="J")
-def energy(
-    scene: Scene,
-    cache: SolutionCache,
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    of: Annotated[
-        Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
-        Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
-    ],
-) -> float:
+def energy(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions, *, of: Term) -> float:
     """A term of the energy balance of beam and slider in a run from rest."""
-    balance = _energy_balance(scene, cache, by, slider)
+    balance = slider_run(scene, cache, by, slider).energy_from_rest
     return float(getattr(balance, "drive_work" if of == "external_work" else of))
-
-
-@quantity("slider.imbalance", unit="1")
-def imbalance(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
-    """Residual of the energy balance of beam and slider in a run from rest, over the work of the forces."""
-    balance = _energy_balance(scene, cache, by, slider)
-    if not balance.drive_work:
-        raise InputError("drive.force does no work in this run: give it an amplitude, or measure slider.energy")
-    return abs(balance.residual / balance.drive_work)
 
 
 @quantity("slider.coupling_size", unit="1")
