@@ -149,11 +149,9 @@ class Quantity:
 
 
 MODULES = {
-    "modes": ("mode", "drive", "beam"),
-    "waves": ("wave",),
-    "drive": ("drive", "wave"),
-    "actuator": ("actuator",),
-    "shunt": ("shunt",),
+    "modes": ("mode", "beam", "drive"),
+    "waves": ("wave", "drive"),
+    "actuator": ("actuator", "shunt", "drive"),
     "slider": ("slider", "motion"),
     "motor": ("motor",),
     "control": ("control",),
@@ -166,20 +164,18 @@ MODULES = {
 
 
 class Quantities(Registry[Quantity]):
-    """The quantities; the modules of a family are imported when one of its names is looked up, all for a list."""
+    """The quantities; a name imports the modules of its family until one registers it, a list imports all."""
 
     def __contains__(self, name: object) -> bool:
-        self._load(str(name).partition(".")[0])
+        for module, families in MODULES.items():
+            if name not in self._members and str(name).partition(".")[0] in families:
+                import_module(f"verify.quantities.{module}")
         return super().__contains__(name)
 
     def __iter__(self) -> Iterator[str]:
-        self._load()
+        for module in MODULES:
+            import_module(f"verify.quantities.{module}")
         return super().__iter__()
-
-    def _load(self, family: str = "") -> None:
-        for module, families in MODULES.items():
-            if not family or family in families:
-                import_module(f"verify.quantities.{module}")
 
 
 QUANTITIES = Quantities("quantity", "verify.quantities")

@@ -1,6 +1,6 @@
 """Quantities in time: a slider on the driven beam, energy balance and coupling, and the beam without slider."""
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Meta
@@ -10,19 +10,18 @@ from verify import options
 from verify.analysis.comparison import asymptotic_order, relative_error
 from verify.analysis.solution_cache import SolutionCache
 from verify.dynamics.arguments import Excitation, Keep, Step
-from verify.dynamics.result import Motion
-from verify.dynamics.simulate import simulate
-from verify.dynamics.step_control import CONVERGED
 from verify.errors import InputError
 from verify.linear.positions import positions_on
 from verify.linear.registry import MODELS
-from verify.motor import travelling_wave
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
 from verify.quantities.base import Place, Scene, figures, quantity
 from verify.travelling_wave import measure_series
 from verify.validation import check_sizes, unit
 from verify.waves.window import check_span, check_waves
+
+if TYPE_CHECKING:
+    from verify.dynamics.result import Motion
 
 Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m")]
@@ -97,22 +96,26 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     return {**driven, **own, "modal_damping": damping}
 
 
-def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> Motion:
+def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> "Motion":
     """A simulation, computed once for equal arguments."""
+    from verify.dynamics.simulate import simulate  # which `verify measure` of a mode does not load
+
     key = tuple(arguments.items())
     if key not in cache.motions:
         cache.motions[key] = simulate(**arguments, progress=cache.progress)
     return cache.motions[key]
 
 
-def slider_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> Motion:
+def slider_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
     return _slider_run(scene, cache, slider, motion_arguments(scene, by))
 
 
 def _slider_run(
     scene: Scene, cache: SolutionCache, slider: SliderOptions, arguments: dict[str, Any], at: tuple[float, ...] = ()
-) -> Motion:
+) -> "Motion":
+    from verify.dynamics.step_control import CONVERGED
+
     sliding = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
     run = _simulated(cache, arguments | sliding)
     status = run.statistics
@@ -227,6 +230,8 @@ def terminal_speed(
     kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
 ) -> float:
     """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
+    from verify.motor import travelling_wave
+
     slider = Slider(mass=1.0, mu=mu, slope=slope, kinematics=kinematics)
     return travelling_wave.terminal_speed(scene.beam, slider, amplitude, opt.drive_frequency(scene))
 

@@ -1,12 +1,13 @@
-"""Quantities of the driven beam in its steady state: field, wave measures, best drive, power, absorbing devices."""
+"""Quantities of the driven beam in its steady state: field, wave, best drive, absorbing devices, voltages, power."""
 
 from math import pi
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify import options, travelling_wave
+from verify.actuators.on_beam import ActuatorState
 from verify.actuators.patch import Patch
 from verify.analysis.comparison import asymptotic_order, relative_error
 from verify.analysis.solution_cache import SolutionCache
@@ -24,6 +25,8 @@ from verify.waves.driven_case import DrivenCase, driven
 from verify.waves.impedance_matching import Ending, ending
 from verify.waves.window import middle_half
 
+Options = TypeVar("Options", bound="FieldOptions")
+Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.force, then in drive.shunt, from 1")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m; default: L/4 to 3L/4")]
 DRIVEN = ("beam", "drive")
 
@@ -266,3 +269,55 @@ def absorber_reflection(
         devices.append(of_impedance(x, impedance, omega, turning=turning))
     field = MODELS[EXACT].build(scene.beam).harmonic(forces, hertz, devices=devices)
     return measure(field, middle_half(scene.beam), field.wavenumber).reflection
+
+
+def _voltages(options: Options) -> Options:
+    return replace(options, drive="voltage") if options.drive is None else options
+
+
+def _voltage_wave(scene: Scene, cache: SolutionCache, options: WaveOptions) -> WaveMeasures:
+    return wave_in_window(scene, cache, _voltages(options))
+
+
+voltage = figures("wave", _voltage_wave, reads=DRIVEN, devices=True)
+voltage(
+    "voltage_ratio",
+    "1",
+    "Standing-wave ratio with the drive's amplitudes as voltages of its actuators.",
+    "standing_wave_ratio",
+)
+voltage(
+    "voltage_direction",
+    "1",
+    "Direction of the stronger wave under voltages: +1 towards +x, -1 towards -x.",
+    "waves.direction",
+)
+
+
+@quantity("wave.pure_voltage_phase", unit="deg", reads=DRIVEN, devices=True)
+def pure_voltage_phase(scene: Scene, options: DirectedOptions) -> float:
+    """Phase lead of the second of two equal voltages with least reflection, in (-180, 180] degrees."""
+    return pure_drive(scene, _voltages(options)).equal_phase_deg
+
+
+def _actuator(scene: Scene, options: FieldOptions, actuator: int) -> ActuatorState:
+    """The ports of an actuator, from 1. Raises InputError."""
+    case = driven_case(scene, options)
+    if case.kind == "displacement" or not (case.electrical or case.shunts):
+        raise InputError(f"drive.kind = {case.kind!r}: no actuator takes electrical power, give 'voltage' or 'current'")
+    states = case.actuated(case.acting, case.frequency_hz).actuators
+    if actuator > len(states):
+        raise InputError(f"actuator = {actuator!r}: the drive has {len(states)} actuators, give at most that")
+    return states[actuator - 1]
+
+
+@quantity("drive.power", unit="W", reads=DRIVEN, devices=True)
+def power(scene: Scene, options: FieldOptions, *, actuator: Number = 1) -> float:
+    """Mean electrical power into an actuator; negative where it returns power to its source or feeds a load."""
+    return _actuator(scene, options, actuator).power_in
+
+
+@quantity("drive.current", unit="A", reads=DRIVEN, devices=True)
+def current(scene: Scene, options: FieldOptions, *, actuator: Number = 1) -> float:
+    """Amplitude of the current into an actuator, by which an amplifier is chosen."""
+    return abs(_actuator(scene, options, actuator).current)
