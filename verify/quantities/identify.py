@@ -17,6 +17,7 @@ Side = Annotated[
     Literal["half-width", "lower", "upper", "profile-lower", "profile-upper", "value", "sd", "cramer-rao"],
     Meta(description="of the interval or the profile (its bound for no end), the estimate or its deviation"),
 ]
+Repeats = Annotated[int, Meta(ge=100, le=100_000, description="number of fits")]
 Until = Annotated[float, Meta(gt=0, description="end of the synthetic data, in the unit of their span")]
 
 
@@ -62,13 +63,7 @@ def interval(
 
 
 @quantity("identify.coverage", unit="1", reads=READS)
-def coverage(
-    scene: Scene,
-    cache: SolutionCache,
-    *,
-    parameter: Name,
-    repeats: Annotated[int, Meta(ge=100, le=100_000, description="number of fits")] = 2000,
-) -> float:
+def coverage(scene: Scene, cache: SolutionCache, *, parameter: Name, repeats: Repeats = 2000) -> float:
     """Fraction of fits to synthetic data whose 95 % interval by Fisher information contains the true value."""
     study = _study(scene, parameter, synthetic=True)
     own, model = study.synthetic, study.data(scene)[0]

@@ -2,24 +2,29 @@
 
 from functools import partial
 from math import pi, sqrt
-from typing import Annotated, Any
+from typing import Annotated
 
 from msgspec import Meta
 
 from verify.analysis import comparison
-from verify.analysis.comparison import asymptotic_order, node_weights, zeros
+from verify.analysis.comparison import asymptotic_order, node_weights
 from verify.analysis.sizing import sufficient_size
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
 from verify.exact import closed_forms, plate
 from verify.exact.error_laws import law_of, leading_error
+from verify.linear.numerics import zeros
 from verify.linear.registry import MEAN, MODELS
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, quantity
 from verify.validation import Relative, check_sizes
 
 BEAM = ("beam",)
+Node = Annotated[int, Meta(ge=1, description="number of the node from the left, without the ends")]
+UpperMode = Annotated[int, Meta(ge=2, description="upper mode number of the pair")]
+Largest = Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+BucklingModel = Annotated[str, opt.model_name("model of the beam", "buckling_load")]
 Reading = Annotated[
     str, Meta(description="nodal values. segment: corrected (default, y + delta^2 y / 12) or raw; fem: nodal")
 ]
@@ -74,19 +79,13 @@ def curvature_error(cache: SolutionCache, of: opt.OneDiscreteMode) -> float:
 
 
 @quantity("mode.node_position", unit="m", reads=BEAM)
-def node_position(
-    cache: SolutionCache,
-    of: opt.OneMode,
-    *,
-    node: Annotated[int, Meta(ge=1, description="number of the node from the left, without the ends")] = 1,
-) -> float:
+def node_position(cache: SolutionCache, of: opt.OneMode, *, node: Node = 1) -> float:
     """Position of a node of a mode, from the left end."""
-    shape: Any = partial(cache.exact_shape, of.mode, theory=of.theory)
-    if of.count is not None:
-        modes = cache.modes(of.model, of.count, of.mode, of.settings)
+    if of.count is None:
+        positions = zeros(partial(cache.exact_shape, of.mode, theory=of.theory), cache.beam.length, of.mode)
+    else:
         index = cache.paired_index(of.model, of.count, of.mode, of.settings)
-        shape = lambda x: modes.deflection(x)[index]  # noqa: E731
-    positions = zeros(shape, cache.beam.length, of.mode)
+        positions = cache.modes(of.model, of.count, of.mode, of.settings).node_positions(index + 1)
     if node > len(positions):
         raise InputError(f"node = {node}: mode {of.mode} has {len(positions)} nodes between the ends, give fewer")
     return float(positions[node - 1])
@@ -136,12 +135,7 @@ def bracket(cache: SolutionCache, options: opt.ModelOptions, *, mode: opt.Mode, 
 
 @quantity("mode.count_needed", unit="1", reads=BEAM)
 def count_needed(
-    cache: SolutionCache,
-    options: opt.ModelOptions,
-    *,
-    model: opt.DiscreteModel,
-    mode: opt.Mode,
-    error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")],
+    cache: SolutionCache, options: opt.ModelOptions, *, model: opt.DiscreteModel, mode: opt.Mode, error: Largest
 ) -> float:
     """Sufficient number of segments or elements: for this and every larger number the error is at most `error`."""
     return sufficient_size(cache, model, mode, error, opt.check_settings(model, options.settings)).count
@@ -154,9 +148,7 @@ def stock_difference(scene: Scene, cache: SolutionCache, *, mode: opt.Mode, coun
 
 
 @quantity("drive.rule_frequency", unit="Hz", reads=BEAM)
-def rule_frequency(
-    scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="upper mode number of the pair")] = 22
-) -> float:
+def rule_frequency(scene: Scene, *, mode: UpperMode = 22) -> float:
     """Drive frequency at which two neighbouring modes respond equally: rms of their natural frequencies."""
     return sqrt(sum(closed_forms.frequency_hz(scene.beam, n) ** 2 for n in (mode - 1, mode)) / 2.0)
 
@@ -173,12 +165,7 @@ def quarter_wavelength(scene: Scene, *, frequency_hz: opt.Frequency | None = Non
 
 
 @quantity("beam.buckling_load", unit="N", reads=BEAM)
-def buckling_load(
-    scene: Scene,
-    *,
-    model: Annotated[str, opt.model_name("model of the beam", "buckling_load")],
-    count: opt.Size | None = None,
-) -> float:
+def buckling_load(scene: Scene, *, model: BucklingModel, count: opt.Size | None = None) -> float:
     """Lowest buckling load of the beam in compression; its own axial force is ignored."""
     opt.check_count(model, count)
     return MODELS.named(model).build(scene.beam, count).buckling_load()

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m")]
+Kinematics = Annotated[options.Kinematics, Meta(description="kinematics of the slider")]
+Amplitude = Annotated[float, Meta(gt=0, description="amplitude of the wave, m")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Samples per period, and positions, at which the wave of a motion is measured."""
 SOFT_START_PERIODS = 2.0
@@ -53,7 +55,7 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
     slope: opt.Slope | None = None
     mass: opt.Mass | None = None
     law: Annotated[options.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
-    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] | None = None
+    kinematics: Kinematics | None = None
     coupling: Annotated[options.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
     normal: Annotated[options.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
     slider_position: Annotated[Place, Meta(description="initial position, m")] | None = None
@@ -190,6 +192,7 @@ def deflection(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: Slid
     return float(_slider_run(scene, cache, slider, motion_arguments(scene, by), at=(x,)).deflection[-1, 0])
 
 
+Cause = Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")]
 Term = Annotated[
     Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
     Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
@@ -204,12 +207,7 @@ def energy(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOp
 
 
 @quantity("slider.coupling_size", unit="1")
-def coupling_size(
-    scene: Scene,
-    cache: SolutionCache,
-    *,
-    of: Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")],
-) -> float:
+def coupling_size(scene: Scene, cache: SolutionCache, *, of: Cause) -> float:
     """Size of two-way coupling: surface motion due to the slider relative to that of the wave, exact beam."""
     by = TimeOptions(model="analytic", start="steady", time=1.0 / opt.drive_frequency(scene))
     coupling = slider_run(scene, cache, by, SliderOptions()).coupling
@@ -222,12 +220,7 @@ def coupling_size(
 
 @quantity("slider.terminal_speed", unit="m/s", reads=("beam", "drive"))
 def terminal_speed(
-    scene: Scene,
-    *,
-    amplitude: Annotated[float, Meta(gt=0, description="amplitude of the wave, m")],
-    slope: opt.Slope,
-    mu: opt.Mu,
-    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] = "tangential",
+    scene: Scene, *, amplitude: Amplitude, slope: opt.Slope, mu: opt.Mu, kinematics: Kinematics = "tangential"
 ) -> float:
     """Steady mean speed along +x of a slider with tanh friction on a travelling wave towards +x."""
     from verify.motor import travelling_wave

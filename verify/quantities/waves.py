@@ -194,21 +194,18 @@ def order(
     return asymptotic_order(counts, [relative_error(figure(case), reference) for case in cases])
 
 
+TwoModes = Annotated[tuple[opt.Mode, opt.Mode], Meta(description="numbers of the two modes")]
+Limit = Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")]
+
+
 @quantity("wave.lumped_swr", unit="1", reads=("beam",), devices=True)
-def lumped_swr(
-    scene: Scene,
-    *,
-    x: Place,
-    modes: Annotated[tuple[opt.Mode, opt.Mode], Meta(description="numbers of the two modes")] = (21, 22),
-) -> float:
+def lumped_swr(scene: Scene, *, x: Place, modes: TwoModes = (21, 22)) -> float:
     """Local standing-wave ratio of two equal modes in quadrature (lumped-parameter model)."""
     return float(two_modes.lumped_swr(scene.beam, x, modes)[0])
 
 
 @quantity("wave.fastest_crests", unit="m/s", reads=DRIVEN)
-def fastest_crests(
-    scene: Scene, *, limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1
-) -> float:
+def fastest_crests(scene: Scene, *, limit: Limit = 0.1) -> float:
     """Largest crest speed at reflections up to `limit`: forces in place, frequency within 1.5 %, phase 5 to 175 deg."""
     return operating_point.maximum_crest_speed(driven_case(scene, FieldOptions()), limit).crest_speed
 
