@@ -10,7 +10,6 @@ from msgspec.structs import replace
 
 from verify.control import plants
 from verify.control.controller import Controller, magnitude_optimum
-from verify.control.loop import Response, closed_loop
 from verify.errors import InputError
 from verify.motor.steady_state import MotorCase
 from verify.validation import unit
@@ -95,8 +94,3 @@ class LoopOptions(msgspec.Struct, frozen=True, kw_only=True):
         error = abs(direct * motor / (slider.mass * (speed or plant_gain * self.upper)))
         motors = {"linear": linear, "averaged": averaged, "full": full}
         return Loop(controller, motors, command_at(self.speed), (motor, envelope), error)
-
-    def response_of(self, loop: Loop, plant: str) -> Response:
-        """The response of a plant of a loop. Raises InputError."""
-        duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
-        return closed_loop(loop.controller, loop.plants[plant], self.target, duration, (self.speed, loop.command))

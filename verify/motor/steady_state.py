@@ -54,16 +54,13 @@ UNCONVERGED: dict[str, str] = {
     "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
 }
 NO_POWER = "no power flows from the surface to the load, choose a speed between zero and the no-load speed"
-DEPENDS: "dict[str, tuple[Figure, ...]]" = {
-    "force": ("force",),
-    "power": ("force",),
-    "efficiency": ("force", "powers"),
-    "normal_force": ("normal force",),
-    "contact_fraction": ("fractions",),
-    "stick_fraction": ("fractions",),
-    "friction_power": ("powers",),
+GROUPS: "dict[str, Figure]" = {
+    "normal_force": "normal force",
+    "contact_fraction": "fractions",
+    "stick_fraction": "fractions",
+    "friction_power": "powers",
 }
-"""Means that have to converge, by the figure that depends on them."""
+"""Criterion of convergence of a mean; that of all others is the force."""
 SLIPS = 8.0
 """Slider displacement in the first window over mu N / (stiffness of the softest point), at which all points slip."""
 
@@ -169,11 +166,9 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
         return self.power / supplied if supplied > 0.0 and self.power >= 0.0 else None
 
     def estimate(self, figure: str) -> Estimate:
-        """A figure of `DEPENDS` with its error, SI; efficiency without error.
-
-        Raises InputError where it has not converged, and for an undefined efficiency.
-        """
-        if missing := next((name for name in DEPENDS[figure] if not self.converged(name)), None):
+        """One of `Means`, the power, or the efficiency (whose error is 0), SI. Raises InputError if not converged."""
+        criteria: tuple[Figure, ...] = ("force", "powers") if figure == "efficiency" else (GROUPS.get(figure, "force"),)
+        if missing := next((name for name in criteria if not self.converged(name)), None):
             raise InputError(f"periods = {self.periods!r}: {UNCONVERGED[missing]}")
         if figure == "power":
             return Estimate(self.power, abs(self.speed) * self.errors.force)

@@ -8,8 +8,6 @@ the attributes of a result.
     @quantity("drive.rule_frequency", unit="Hz", reads=("beam",))
     def rule_frequency(scene: Scene, *, mode: Annotated[int, Meta(ge=2, description="the upper one of two")] = 22):
         \"\"\"Root mean square of two neighbouring natural frequencies.\"\"\"
-
-Nothing here imports numpy.
 """
 
 import inspect
@@ -43,8 +41,6 @@ Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extr
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
 TABLES = ("beam", "drive", "slider", "motion")  # tables of a scene that a quantity may depend on
 ROUNDING = 1e-12  # tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)
-
-
 UNITS = {"resistance": "ohm", "inductance": "H", "capacitance": "F", "peak": "1", "loss_factor": "1"}
 """Unit of a quantity with several figures by the argument that names the figure."""
 
@@ -157,8 +153,7 @@ MODULES = {
     "control": ("control",),
     "chain": ("chain",),
     "contact": ("contact", "friction", "slider"),
-    "identify": ("identify",),
-    "study": ("study",),
+    "study": ("study", "identify"),
 }
 """Families of quantities, the first words of their names, by the module of this package that registers them."""
 

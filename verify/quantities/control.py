@@ -6,7 +6,7 @@ from typing import Any
 from verify.analysis.solution_cache import SolutionCache
 from verify.control import plants
 from verify.control.design import Loop, LoopOptions
-from verify.control.loop import Response
+from verify.control.loop import Response, closed_loop
 from verify.errors import InputError
 from verify.motor.steady_state import MotorCase
 from verify.quantities import options as opt
@@ -46,7 +46,10 @@ class ControlOptions(LoopOptions, frozen=True, kw_only=True):
         options = {name: getattr(self, name) for name in ControlOptions.__struct_fields__} | {"plant": plant}
         key: Any = ("control", *options.values(), scene.slider, scene.drive)
         if key not in cache.motors:
-            cache.motors[key] = self.response_of(self.loop(scene, cache), plant)
+            loop = self.loop(scene, cache)
+            duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
+            start = self.speed, loop.command
+            cache.motors[key] = closed_loop(loop.controller, loop.plants[plant], self.target, duration, start)
         return cache.motors[key]  # type: ignore[no-any-return]
 
 

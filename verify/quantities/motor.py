@@ -38,9 +38,9 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
             raise InputError("slider.contact is missing: add [slider] with mass, mu and [slider.contact] to the scene")
         settings = {name: getattr(self, name) for name in MotorOptions.__struct_fields__ if name != "theory"}
         hertz = opt.drive_frequency(scene)
-        there = scene.in_time(opt.DriveOptions().forces(scene), hertz)
-        settings |= {"slider": scene.slider, "circuits": there.circuits}
-        return MotorCase(beam=there.beam, forces=there.loads, frequency_hz=hertz, **settings)
+        loaded = scene.in_time(opt.DriveOptions().forces(scene), hertz)
+        settings |= {"slider": scene.slider, "circuits": loaded.circuits}
+        return MotorCase(beam=loaded.beam, forces=loaded.loads, frequency_hz=hertz, **settings)
 
 
 def cached(cache: SolutionCache, function: Callable[..., Result], *arguments: Any) -> Result:

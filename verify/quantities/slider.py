@@ -91,11 +91,10 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
         soft = (SOFT_START_PERIODS if start == "rest" else 0.0) if soft is None else soft
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
-    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start}
-    there = scene.in_time(forces, hertz)
-    excitation = Excitation(there.loads, hertz, soft, circuits=there.circuits)
-    driven = {"beam": there.beam, "excitation": excitation, "duration": time}
-    return {**driven, **own, "modal_damping": damping}
+    loaded = scene.in_time(forces, hertz)
+    excitation = Excitation(loaded.loads, hertz, soft, circuits=loaded.circuits)
+    model = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "modal_damping": damping}
+    return {"beam": loaded.beam, "excitation": excitation, "duration": time, **model}
 
 
 def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> "Motion":

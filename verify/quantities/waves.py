@@ -1,7 +1,7 @@
 """Quantities of the driven beam in its steady state: field, wave, best drive, absorbing devices, voltages, power."""
 
 from math import pi
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 from msgspec import Meta
 from msgspec.structs import replace
@@ -12,7 +12,6 @@ from verify.actuators.patch import Patch
 from verify.analysis.comparison import asymptotic_order, relative_error
 from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
-from verify.linear.field import HarmonicField
 from verify.linear.registry import EXACT, MODELS
 from verify.problem.device import of_impedance
 from verify.quantities import options as opt
@@ -25,7 +24,6 @@ from verify.waves.driven_case import DrivenCase, driven
 from verify.waves.impedance_matching import Ending, ending
 from verify.waves.window import middle_half
 
-Options = TypeVar("Options", bound="FieldOptions")
 Number = Annotated[int, Meta(ge=1, description="number of the actuator in drive.force, then in drive.shunt, from 1")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m; default: L/4 to 3L/4")]
 DRIVEN = ("beam", "drive")
@@ -74,8 +72,8 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
     kind = options.drive or (scene.drive.kind if scene.drive else "force")
     forces, actuator = options.forces(scene), scene.drive.actuator if scene.drive else None
     if isinstance(actuator, Patch) and (scene.shunts or kind in ("voltage", "current")):
-        driven = [force.position for force in forces] if kind in ("voltage", "current") else []
-        actuator, beam = actuator.bonded(beam), actuator.on(beam, [*driven, *(x for x, _ in scene.shunts)])
+        positions = [force.position for force in forces] if kind in ("voltage", "current") else []
+        actuator, beam = actuator.bonded(beam), actuator.on(beam, [*positions, *(x for x, _ in scene.shunts)])
     return DrivenCase(
         model=MODELS.named(model).build(beam, count, **settings),
         forces=forces,
@@ -87,11 +85,6 @@ def driven_case(scene: Scene, options: FieldSettings, model: str = "", count: in
     )
 
 
-def driven_field(scene: Scene, cache: SolutionCache, options: FieldOptions) -> HarmonicField:
-    """The steady field of a scene with these options. Raises InputError."""
-    return driven(driven_case(scene, options), cache)
-
-
 def measured(case: DrivenCase, cache: SolutionCache, window: tuple[float, float] | None = None) -> WaveMeasures:
     """The wave of a case in a window (default: middle half) with the model's wavenumber. Raises InputError."""
     field = driven(case, cache)
@@ -101,7 +94,7 @@ def measured(case: DrivenCase, cache: SolutionCache, window: tuple[float, float]
 @quantity("wave.deflection", unit="m", reads=DRIVEN, devices=True)
 def deflection(scene: Scene, cache: SolutionCache, options: FieldOptions, *, x: Place) -> complex:
     """Complex deflection amplitude at x, convention e^{+i omega t}."""
-    return complex(driven_field(scene, cache, options).deflection(x)[0])
+    return complex(driven(driven_case(scene, options), cache).deflection(x)[0])
 
 
 def wave_in_window(scene: Scene, cache: SolutionCache, options: WaveOptions) -> WaveMeasures:
@@ -129,7 +122,7 @@ def axis_ratio(scene: Scene, cache: SolutionCache, options: WaveOptions, *, x: P
         return wave_in_window(scene, cache, options).mean_axis_ratio
     if options.window is not None:
         raise InputError(f"window = {list(options.window)} with x = {x!r}: give one of the two")
-    return float(travelling_wave.axis_ratio(driven_field(scene, cache, options), x)[0])
+    return float(travelling_wave.axis_ratio(driven(driven_case(scene, options), cache), x)[0])
 
 
 wave(
@@ -268,12 +261,8 @@ def absorber_reflection(
     return measure(field, middle_half(scene.beam), field.wavenumber).reflection
 
 
-def _voltages(options: Options) -> Options:
-    return replace(options, drive="voltage") if options.drive is None else options
-
-
 def _voltage_wave(scene: Scene, cache: SolutionCache, options: WaveOptions) -> WaveMeasures:
-    return wave_in_window(scene, cache, _voltages(options))
+    return wave_in_window(scene, cache, replace(options, drive=options.drive or "voltage"))
 
 
 voltage = figures("wave", _voltage_wave, reads=DRIVEN, devices=True)
@@ -294,7 +283,7 @@ voltage(
 @quantity("wave.pure_voltage_phase", unit="deg", reads=DRIVEN, devices=True)
 def pure_voltage_phase(scene: Scene, options: DirectedOptions) -> float:
     """Phase lead of the second of two equal voltages with least reflection, in (-180, 180] degrees."""
-    return pure_drive(scene, _voltages(options)).equal_phase_deg
+    return pure_drive(scene, replace(options, drive=options.drive or "voltage")).equal_phase_deg
 
 
 def _actuator(scene: Scene, options: FieldOptions, actuator: int) -> ActuatorState:
