@@ -28,6 +28,11 @@ ShortHz = Annotated[float, unit("Hz"), Meta(gt=0, description="frequency of the 
 Ohm = Annotated[float, unit("ohm"), Meta(gt=0, description="resistance; default: that of the optimum")]
 Henry = Annotated[float, unit("H"), Meta(gt=0, description="inductance; default: that of the optimum")]
 Figure = Annotated[Literal["resistance", "inductance"], Meta(description="ohm or H")]
+Optimum = Annotated[
+    Literal["resistance", "inductance", "peak", "loss_factor"],
+    Meta(description="ohm, H, or without a unit; loss_factor: Im/Re of the stiffness at short_hz"),
+]
+Detuning = Annotated[Relative, Meta(gt=-1, description="relative error of the inductance")]
 DRIVE = ("drive",)
 
 
@@ -38,8 +43,8 @@ def scene_actuator(scene: Scene, kind: type = Actuator, example: str = "stack") 
         remedy = f"give kind = {example!r} and its sizes"
         if actuator is None:
             raise InputError(f"drive.actuator is missing: add [drive.actuator], and {remedy}")
-        own = type(actuator).__name__.lower()
-        raise InputError(f"drive.actuator is a {own}, for which this quantity is not defined: {remedy}")
+        name = type(actuator).__name__.lower()
+        raise InputError(f"drive.actuator is a {name}, for which this quantity is not defined: {remedy}")
     return actuator
 
 
@@ -130,20 +135,13 @@ def peak(scene: Scene, shunt: ShuntOptions, *, resistance: Ohm | None = None, in
     """Largest response of a shunted mode over its static deflection with short-circuited electrodes."""
     mode, load = shunt.best(scene)
     if inductance is not None:
-        load = replace(load, inductance=load.part("inductance") and inductance)
+        load.part("inductance")  # raises InputError for a circuit without one
+        load = replace(load, inductance=inductance)
     return mode.peak(replace(load, resistance=resistance or load.resistance))
 
 
 @quantity("shunt.optimum", unit="1, ohm or H", reads=DRIVEN)
-def optimum(
-    scene: Scene,
-    shunt: ShuntOptions,
-    *,
-    figure: Annotated[
-        Literal["resistance", "inductance", "peak", "loss_factor"],
-        Meta(description="ohm, H, or without a unit; loss_factor: Im/Re of the stiffness at short_hz"),
-    ] = "peak",
-) -> float:
+def optimum(scene: Scene, shunt: ShuntOptions, *, figure: Optimum = "peak") -> float:
     """Optimum of a shunt in closed form: its resistance, inductance, peak of the response, or loss factor."""
     mode, load = shunt.best(scene)
     if figure in ("peak", "loss_factor"):
@@ -169,11 +167,7 @@ def absorber(
 
 @quantity("shunt.reflection", unit="1", reads=DRIVEN, devices=True)
 def reflection(
-    scene: Scene,
-    *,
-    position: FromRightEnd,
-    frequency_hz: opt.Frequency | None = None,
-    detuning: Annotated[Relative, Meta(gt=-1, description="relative error of the inductance")] = 0.0,
+    scene: Scene, *, position: FromRightEnd, frequency_hz: opt.Frequency | None = None, detuning: Detuning = 0.0
 ) -> float:
     """Reflection Gamma at the scene's actuator near the right end with the matched load, its inductance detuned."""
     port, end, load, omega = _absorber(scene, position, frequency_hz)

@@ -158,6 +158,12 @@ pure(
 )
 
 
+Measure = Annotated[
+    Literal["standing_wave_ratio", "axis_ratio", "deflection"],
+    Meta(description="measure whose error is observed; deflection: at the middle of the window"),
+]
+
+
 @quantity("wave.order", unit="1", reads=DRIVEN, devices=True)
 def order(
     scene: Scene,
@@ -166,10 +172,7 @@ def order(
     *,
     model: opt.DiscreteField,
     counts: opt.Sizes,
-    of: Annotated[
-        Literal["standing_wave_ratio", "axis_ratio", "deflection"],
-        Meta(description="measure whose error is observed; deflection: at the middle of the window"),
-    ] = "standing_wave_ratio",
+    of: Measure = "standing_wave_ratio",
     window: Window | None = None,
 ) -> float:
     """Observed order of a wave measure in N, reference: exact field; an error outside the asymptotic range."""
