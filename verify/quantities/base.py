@@ -15,6 +15,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from math import isfinite
 from operator import attrgetter
+from pathlib import Path
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import msgspec
@@ -144,26 +146,27 @@ class Quantity:
         return value
 
 
-MODULES = {
-    "modes": ("mode", "beam", "drive"),
-    "waves": ("wave", "drive"),
-    "actuator": ("actuator", "shunt", "drive"),
-    "slider": ("slider", "motion"),
-    "motor": ("motor",),
-    "control": ("control",),
-    "chain": ("chain",),
-    "contact": ("contact", "friction", "slider"),
-    "study": ("study", "identify"),
+MODULES = sorted({module.name for module in iter_modules([str(Path(__file__).parent)])} - {"base", "options"})
+"""Modules of this folder that register quantities."""
+FAMILIES = {
+    "mode": "modes",
+    "beam": "modes",
+    "drive": "modes",
+    "wave": "waves",
+    "shunt": "actuator",
+    "motion": "slider",
 }
-"""Families of quantities, the first words of their names, by the module of this package that registers them."""
+"""First module for a family, the first word of a name, where it has another name; the others follow."""
 
 
 class Quantities(Registry[Quantity]):
-    """The quantities; a name imports the modules of its family until one registers it, a list imports all."""
+    """The quantities; a name imports the modules of this folder until one registers it, a list imports all."""
 
     def __contains__(self, name: object) -> bool:
-        for module, families in MODULES.items():
-            if name not in self._members and str(name).partition(".")[0] in families:
+        family = str(name).partition(".")[0]
+        first = FAMILIES.get(family, family)
+        for module in sorted(MODULES, key=lambda module: module != first):
+            if name not in self._members:
                 import_module(f"verify.quantities.{module}")
         return super().__contains__(name)
 
