@@ -7,6 +7,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Device                                                       impedance on a driven beam: absorber or actuator
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         their results
+  mode_errors, ModeErrors                                      errors of the modes of one model against another
   travelling_wave                                              the wave in a field: measure, WaveMeasures
   Stack, Bar33, Bar31, Langevin, EndMass, Patch                piezoelectric actuators; PiezoMaterial: their ceramic
   on_beam, Mounted, Load                                       actuators on a driven beam, with electrical loads
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from verify.actuators.patch import Patch
     from verify.actuators.shunt import Load
     from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
+    from verify.analysis.comparison import ModeErrors, mode_errors
     from verify.analytic_modes import ExactModel
     from verify.chain.statics import Bent, bend
     from verify.dynamics.arguments import Excitation, Keep, PrescribedSlider, Step
@@ -56,10 +58,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Bar31", "Bar33", "Beam", "Bent", "Contact", "Device", "EndMass", "ExactModel", "Excitation", "Foot",
-    "FreeVibration", "HarmonicField", "HermiteModel", "InputError", "Keep", "Langevin", "Load", "Modes", "Motion",
-    "Mounted", "Patch", "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring",
+    "FreeVibration", "HarmonicField", "HermiteModel", "InputError", "Keep", "Langevin", "Load", "ModeErrors", "Modes",
+    "Motion", "Mounted", "Patch", "PiezoMaterial", "PointForce", "PointMass", "PointMoment", "PointSpring",
     "PrescribedSlider", "Section", "SegmentModel", "Slider", "Stack", "Step", "WaveMeasures", "__version__", "bend",
-    "free_vibration", "load_scene", "on_beam", "run_scene", "simulate", "travelling_wave",
+    "free_vibration", "load_scene", "mode_errors", "on_beam", "run_scene", "simulate", "travelling_wave",
 ]  # fmt: skip
 __version__ = "0.1.0"
 
@@ -69,6 +71,7 @@ _HOME = {
     "PointMass": "problem.point_attachments", "PointSpring": "problem.point_attachments", "Contact": "problem.slider",
     "Foot": "problem.slider", "Slider": "problem.slider", "ExactModel": "analytic_modes", "HermiteModel": "fem_beam",
     "SegmentModel": "segment_model", "HarmonicField": "linear.field", "Modes": "linear.modes",
+    "ModeErrors": "analysis.comparison", "mode_errors": "analysis.comparison",
     "WaveMeasures": "travelling_wave", "simulate": "dynamics.simulate", "Motion": "dynamics.result",
     "Excitation": "dynamics.arguments", "PrescribedSlider": "dynamics.arguments", "Step": "dynamics.arguments",
     "Keep": "dynamics.arguments",

@@ -190,11 +190,8 @@ class SolutionCache:
         from verify.analysis.comparison import node_weights, shape_error
 
         modes = self.modes(model, count, mode, settings)
-        if reading is not None and reading not in modes.readings:
-            raise InputError(f"reading = {reading!r} is not a reading of {model}: give {', '.join(modes.readings)}")
-        read = modes.readings[reading or next(iter(modes.readings))]
         exact = self.exact_shape(mode, modes.nodes, theory=theory_of(settings))
-        shape = read()[self.paired_index(model, count, mode, settings)]
+        shape = modes.at_nodes(reading)[self.paired_index(model, count, mode, settings)]
         mass = sum(piece.mass_per_length * piece.length for piece in self.beam.pieces)
         return shape_error(exact, shape, node_weights(modes.nodes), mass**-0.5)
 

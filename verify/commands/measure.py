@@ -19,7 +19,8 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     Example: `verify measure paper mode.frequency_error model=segment mode=22 count=49`
     """
     from verify.analysis.solution_cache import SolutionCache
-    from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
+    from verify.estimate import Estimate, as_plain, as_text
+    from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
     from verify.report.result import Result
     from verify.scene.load import load_scene
     from verify.studies.sweep import quantity_margins
