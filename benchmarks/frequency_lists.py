@@ -27,9 +27,10 @@ from verify.compare.reading import listed
 from verify.engines import ENGINES, chain_of
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
-from verify.options import Support, Theory
 from verify.problem.beam import Beam, in_plane
+from verify.problem.supports import Support
 from verify.segment_model import SegmentModel
+from verify.settings import Theory
 
 PAIRS: tuple[tuple[Support, Support], ...]
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "rayleigh", "timoshenko")

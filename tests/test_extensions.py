@@ -56,7 +56,7 @@ why = "rho b h L g."
 def toys(monkeypatch):
     toys = {"__name__": "toys"}
     for registry in (MODELS, QUANTITIES, STUDIES, ENGINES):
-        monkeypatch.setattr(registry, "_members", dict(registry._members))
+        monkeypatch.setattr(registry, "_members", dict(registry))
     exec(LINES, toys)
     MODELS.register(toys["Sines"])
     STUDIES.register(toys["Load"])

@@ -8,6 +8,7 @@ import pytest
 
 from verify import load_scene
 from verify.analysis.solution_cache import SolutionCache
+from verify.cases.table import CASES
 from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
 from verify.scene.file import packaged_scenes
 
@@ -46,13 +47,13 @@ def scene_and_cache(name):
 
 @cache
 def value_of(scene, source):
-    """The expected value of a gate, or the value of a quantity with arguments."""
+    """The expected value of a gate, that of its case where it judges an error, or a quantity with arguments."""
     name, *arguments = source.split()
     loaded, solutions = scene_and_cache(scene)
     if name in QUANTITIES:
         return evaluate(name, parse_arguments(name, arguments), loaded, solutions)
     (gate,) = (gate for gate in loaded.gate if gate.id == name)
-    return gate.expect
+    return CASES[gate.arguments["case"]].exact if gate.quantity == "case.error" else gate.expect
 
 
 def figures_of(text):

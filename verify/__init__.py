@@ -7,6 +7,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Device                                                       impedance on a driven beam: absorber or actuator
   ExactModel, HermiteModel, SegmentModel                       models of a beam: modes, harmonic, imposed, ...
   Modes, HarmonicField                                         their results
+  mode_errors, ModeErrors                                      errors of the modes of one model against another
   travelling_wave                                              the wave in a field: measure, WaveMeasures
   Stack, Bar33, Bar31, Langevin, EndMass, Patch                piezoelectric actuators; PiezoMaterial: their ceramic
   on_beam, Mounted, Load                                       actuators on a driven beam, with electrical loads

@@ -9,6 +9,8 @@ from verify.actuators.transducers import Bar33 as Bar33
 from verify.actuators.transducers import EndMass as EndMass
 from verify.actuators.transducers import Langevin as Langevin
 from verify.actuators.transducers import Stack as Stack
+from verify.analysis.comparison import ModeErrors as ModeErrors
+from verify.analysis.comparison import mode_errors as mode_errors
 from verify.analytic_modes import ExactModel as ExactModel
 from verify.chain.statics import Bent as Bent
 from verify.chain.statics import bend as bend

@@ -37,6 +37,7 @@ from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT
 from verify.validation import check_integer
 
 EXACT_MODES = 400  # default number of modes of a time basis; higher modes respond quasi-statically
@@ -63,13 +64,9 @@ class ExactModel(BeamModel):
     title: ClassVar[str] = "exact beam"
     colour: ClassVar[str] = "#8a8f98"
     sized: ClassVar[bool] = False
-    modal_settings: ClassVar[tuple[str, ...]] = ("theory",)
 
     beam: Beam
-    theory: str = "euler-bernoulli"
-
-    def __post_init__(self) -> None:
-        self.check_theory()
+    theory: str = DEFAULT.theory
 
     @property
     def n_elastic(self) -> int:
@@ -181,8 +178,8 @@ class ExactModel(BeamModel):
         frequency_hz: Numbers,
     ) -> HarmonicField:
         """The field under loads (N, N m) and imposed displacements (`drives`, m), with devices."""
-        beam, frequencies, one = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
-        if (devices or drives) and not one:
+        beam, frequencies, single = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
+        if (devices or drives) and not single:
             raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
@@ -195,7 +192,7 @@ class ExactModel(BeamModel):
         def read(x: Array, derivative: int, of: int = 0) -> ComplexArray:
             xi, scale = np.minimum(x / beam.length, 1.0), beam.length ** (derivative + of)
             values = np.concatenate([motion.read(xi, derivative, of)[:, 0] for motion, _ in solved]) / scale
-            return np.asarray(values[0] if one else values, dtype=complex)
+            return np.asarray(values[0] if single else values, dtype=complex)
 
         omega = 2.0 * pi * float(frequencies[0])
         constraint_forces = [
@@ -212,7 +209,7 @@ class ExactModel(BeamModel):
             model=self.name,
             count=None,
             beam=beam,
-            frequency_hz=float(frequencies[0]) if one else frequencies,
+            frequency_hz=float(frequencies[0]) if single else frequencies,
             shapes=read,
             theory=self.theory,
             rotation_shapes=(lambda x, d: read(x, d, ROTATION)) if self.theory == "timoshenko" else None,
@@ -228,7 +225,7 @@ class ExactModel(BeamModel):
         xi = vector_on("x", x, self.beam.length) / self.beam.length
         layout = self._stationed(tuple(at.tolist()))
         steady = np.flatnonzero(np.array(self._resonances(self.layout, frequencies)) == 0)
-        loads = [(place, one, False) for place, one in zip(at.tolist(), np.eye(len(at)), strict=True)]
+        loads = [(place, unit, False) for place, unit in zip(at.tolist(), np.eye(len(at)), strict=True)]
         responses = np.full((len(frequencies), len(at), len(xi)), np.nan, dtype=complex)
         for block in np.split(steady, range(_SWEPT_TOGETHER, len(steady), _SWEPT_TOGETHER)) if len(steady) else ():
             responses[block] = self._solve(layout, frequencies[block], loads)[0].read(xi, 0)
@@ -281,12 +278,12 @@ class ExactModel(BeamModel):
         """Raise ResonanceError at an undamped resonance of the beam with devices and imposed displacements."""
         length = self.beam.length
         layout = self._stationed(tuple(drive.position for drive in drives), devices)
-        layout = with_stations(layout, [(one.position / length, Station(support="pinned")) for one in drives])
+        layout = with_stations(layout, [(drive.position / length, Station(support="pinned")) for drive in drives])
         numbers = self._resonances(layout, frequencies)
-        if any(numbers) and (damped := [one for one in devices if one.dashpot or one.rotational_dashpot]):
+        if any(numbers) and (damped := [device for device in devices if device.dashpot or device.rotational_dashpot]):
             # a motion is undamped where it is also a motion of the beam with its dashpots locked
             support = {(True, False): "pinned", (False, True): "guided", (True, True): "clamped"}
-            locked = [Station(support=support[one.dashpot > 0.0, one.rotational_dashpot > 0.0]) for one in damped]
+            locked = [Station(support=support[d.dashpot > 0.0, d.rotational_dashpot > 0.0]) for d in damped]
             fixed = with_stations(layout, [(d.position / length, at) for d, at in zip(damped, locked, strict=True)])
             numbers = [n if m else 0 for n, m in zip(numbers, self._resonances(fixed, frequencies), strict=True)]
         for frequency, number in zip(frequencies.tolist(), numbers, strict=True):
@@ -321,26 +318,26 @@ class ExactModel(BeamModel):
         if self.theory != "euler-bernoulli":
             raise InputError(f"theory = {self.theory!r}: the exact beam in time takes euler-bernoulli alone, choose it")
         check_integer("modes", n_modes, 1, MOST_MODES)
-        own = self.modes(n_modes)
-        omegas = 2.0 * pi * own.frequencies_hz
+        modes_of_beam = self.modes(n_modes)
+        omegas = 2.0 * pi * modes_of_beam.frequencies_hz
         spans, inner = np.array(self.layout.spans), np.array(self.layout.positions[1:-1]) * beam.length
         ratios = spans[:, 2] / spans[:, 1]  # rho A / EI over that of the beam's own section
-        read = lru_cache(maxsize=16)(lambda x, derivative: own.shapes(np.frombuffer(x), derivative))
+        read = lru_cache(maxsize=16)(lambda x, derivative: modes_of_beam.shapes(np.frombuffer(x), derivative))
 
         def fourth(omega: Any, x: Array) -> Array:
             """beta^4 at x, the ratio of the fourth derivative to the deflection."""
             return np.asarray(omega**2 / beam.wave_constant**2 * ratios[np.searchsorted(inner, x, side="right")])
 
         def shapes(x: Array, derivative: int) -> Array:
-            rounds, rest = divmod(derivative, 4)
-            return np.asarray(read(x.tobytes(), rest) * fourth(omegas[:, None], x) ** rounds)
+            rounds, order = divmod(derivative, 4)
+            return np.asarray(read(x.tobytes(), order) * fourth(omegas[:, None], x) ** rounds)
 
         def without_modes(forces: Sequence[PointLoad], frequency_hz: float, loss: float) -> Callable[..., Any]:
             field = ExactModel(replace(beam, loss_factor=loss)).harmonic(forces, frequency_hz)
-            orders = [int(isinstance(one, PointMoment)) for one in forces]
+            orders = [int(isinstance(force, PointMoment)) for force in forces]
             loads = sum(
-                phasor(one) * shapes(np.array([one.position]), order)[:, 0]
-                for one, order in zip(forces, orders, strict=True)
+                phasor(force) * shapes(np.array([force.position]), order)[:, 0]
+                for force, order in zip(forces, orders, strict=True)
             )
             part = loads / (omegas**2 * (1.0 + 1j * loss) - field.omega**2)
             return lambda x, derivative: field.shapes(x, derivative) - part @ shapes(x, derivative)
@@ -362,8 +359,8 @@ class ExactModel(BeamModel):
                 [without_modes(some, frequency_hz, loss) for some in (forces, mirrored)] for loss in losses.tolist()
             ]
             return lambda x, derivative: sum(
-                0.5 * weight * (one(x, derivative) + other(x, derivative).conj())
-                for weight, (one, other) in zip(weights, pairs, strict=True)
+                0.5 * weight * (part(x, derivative) + mirror(x, derivative).conj())
+                for weight, (part, mirror) in zip(weights, pairs, strict=True)
             )
 
         # cells of at most 0.4 over the wavenumber of the highest mode

@@ -25,9 +25,9 @@ from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
-from verify.options import Theory
 from verify.problem.beam import Beam
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT, Theory
 from verify.validation import MOST_PARTS, check_integer
 
 RIGID = 1e14  # largest stiffness relative to that of an element: above it frequencies change by less than 1e-13
@@ -44,8 +44,8 @@ class HermiteModel(DiscreteModel):
 
     beam: Beam
     n_elements: int
-    grading: float = 1.0
-    theory: Theory = "euler-bernoulli"
+    grading: float = DEFAULT.grading
+    theory: Theory = DEFAULT.theory
 
     name = "fem"
     parts = "elements"
@@ -53,11 +53,10 @@ class HermiteModel(DiscreteModel):
     colour = "#e8760c"
     bounds = "above"
     library = "scikit-fem"
-    modal_settings = ("grading", "theory")
 
     def __post_init__(self) -> None:
         check_integer("n_elements", self.n_elements, 1, MOST_PARTS)
-        self.check_theory()
+        super().__post_init__()
         check_division(self.beam, self.n_elements, self.grading, len(cut_pieces(self.beam)))
         self.check_memory()
 
@@ -121,8 +120,8 @@ class HermiteModel(DiscreteModel):
 
         n, free, lengths, every = self.n_elements, self.n_unknowns, self.mesh.lengths, self.unknowns
         # first factor: differences of neighbouring deflections, exact in floating point, then all unknowns
-        e, own = np.arange(n), np.arange(free)
-        ends = np.concatenate([np.stack([every[2 * e], every[2 * e + 2]], 1), np.stack([own, own], 1)])
+        e, single = np.arange(n), np.arange(free)
+        ends = np.concatenate([np.stack([every[2 * e], every[2 * e + 2]], 1), np.stack([single, single], 1)])
         signs = np.repeat([[-1.0, 1.0], [1.0, 0.0]], [n, free], axis=0)
         # second: strains of the elements, each a list of (column, value)
         columns = np.where(every < 0, -1, n + every)
@@ -130,7 +129,7 @@ class HermiteModel(DiscreteModel):
         mean, chord = [(left, -1.0), (right, 1.0)], [(e, 1.0 / lengths)]
         gradient: list[Any] = [(left, 1.0), (right, 1.0), (e, -2.0 / lengths)]
         strains: list[list[Any]] = [mean, gradient]
-        stiffness = [self.own_stiffness]
+        stiffness = [self.strain_stiffness]
         if self.shear:
             strains = [mean, [*gradient, (constant, 2.0)], [(constant, 1.0)], [(constant + 1, 1.0)]]
         if self.beam.tension:
@@ -159,7 +158,7 @@ class HermiteModel(DiscreteModel):
         )
 
     @property
-    def own_stiffness(self) -> Array:
+    def strain_stiffness(self) -> Array:
         """Stiffness d of the element strains, (2N,) or (4N,), from the element matrices of scikit-fem.
 
         K of an element has -4 d_1 / l^2 between its deflections and d_1 - d_0 between its slopes.
@@ -169,12 +168,12 @@ class HermiteModel(DiscreteModel):
         stiffness = self.beam.bending_stiffness / self.unit**2
         bending = el.element_matrices(self.basis, el.bending, self.mesh.stiffnesses).tolocal()
         gradient = -0.25 * self.mesh.lengths**2 * bending[:, 0, 2]
-        own = [gradient - bending[:, 1, 3], gradient]
+        stiffnesses = [gradient - bending[:, 1, 3], gradient]
         if self.shear:
             shear = np.minimum(self.mesh.of("shear_stiffness") / stiffness, RIGID * self.mesh.stiffnesses.max())
             inside = el.element_matrices(self.basis, el.shear, shear).tolocal()
-            own += [inside[:, 4, 4], inside[:, 5, 5]]
-        return np.concatenate(own)
+            stiffnesses += [inside[:, 4, 4], inside[:, 5, 5]]
+        return np.concatenate(stiffnesses)
 
     def _foundation_and_spring_strains(self) -> list[tuple[Any, Array]]:
         """(strain rows over the unknowns, their stiffness) of foundation and springs.
@@ -234,10 +233,10 @@ class HermiteModel(DiscreteModel):
 
     def lossy_stiffness(self, omega: float) -> Any:
         """Stiffness d with the beam's loss factor on bending and shear, (m,)."""
-        stiffness, own = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
+        stiffness, strains = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
         if not self.beam.loss_factor:
             return stiffness
-        return np.concatenate([stiffness[:own] * (1.0 + 1j * self.beam.loss_factor), stiffness[own:]])
+        return np.concatenate([stiffness[:strains] * (1.0 + 1j * self.beam.loss_factor), stiffness[strains:]])
 
     # --- Readings ------------------------------------------------------------------------------------------------
 
@@ -280,8 +279,8 @@ class HermiteModel(DiscreteModel):
     def modes_of(self, vectors: Array) -> dict[str, Any]:
         """Fields of `Modes`: nodes, even points, and two Gauss points per element, at which curvature is of order 4."""
         nodes, lengths, unit = self.mesh.nodes, self.mesh.lengths, self.unit
-        inside = [(nodes[:-1, None] + lengths[:, None] * xi).ravel() * unit
-                  for xi in (np.arange(4) / 4.0, 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0))]  # fmt: skip
+        fractions = np.arange(4) / 4.0, 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
+        inside = [(nodes[:-1, None] + lengths[:, None] * xi).ravel() * unit for xi in fractions]
         points = np.append(inside[0], nodes[-1] * unit)
         ends = np.minimum(nodes * unit, self.beam.length)
         return {
@@ -343,8 +342,8 @@ class HermiteModel(DiscreteModel):
         for first, stop in zip([0, *(last[:-1] + 1)], last + 1, strict=True):
             lengths = self.mesh.lengths[first:stop]
             section = section_at(self.beam, self.mesh.nodes[first] * self.unit)
-            alone = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
-            model = HermiteModel(alone, 1, theory=self.theory)
+            element = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
+            model = HermiteModel(element, 1, theory=self.theory)
             system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
             opposite[[2, 3], [0, 1]] = -1.0
             strain, mass = system.strain(opposite), opposite.T @ (system.mass @ opposite)

@@ -19,7 +19,6 @@ Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses i
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, replace
-from functools import cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -28,23 +27,21 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.linear.mesh import Parts, check_division, divide
-from verify.options import ATTACHMENTS, JOINTS, LOADS, READINGS, WALLS, Attachment, Joints, Load, Reading, Theory, Wall
+from verify.linear.mesh import check_division
 from verify.problem.beam import Beam
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
-from verify.segments.chain import Chain, link_inertia, right_of
+from verify.segments.chain import link_inertia, right_of
 from verify.segments.dispersion import cut_off2, phase
 from verify.segments.orders import order_of
 from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
-from verify.segments.walls import reading_factors, tension_excess, wall_factors
-from verify.validation import MOST_PARTS, check_choice, check_integer, check_number, python_scalar
+from verify.settings import DEFAULT, WALLS, Attachment, Joints, Load, ModelSettings, Reading, Theory, Wall
+from verify.validation import MOST_PARTS, check_integer, python_scalar
 
 if TYPE_CHECKING:
     from verify.engines.description import RigidChain
 
-_WORDS = {"wall": WALLS, "joints": JOINTS, "attachment": ATTACHMENTS, "load": LOADS, "reading": READINGS}
 _FEWEST_CORRECTED = 6
 """Smallest N for which the mass matrix with tensioned Timoshenko joints is positive definite at all supports."""
 _PASSES, _CONVERGED = 60, 1e-13
@@ -53,7 +50,10 @@ _PASSES, _CONVERGED = 60, 1e-13
 
 @dataclass(frozen=True)
 class SegmentModel(ChainStructure):
-    """A beam of `n_segments` rigid links. Raises InputError for unknown and contradictory settings."""
+    """A beam of `n_segments` rigid links with the settings of `verify.settings`, the table of their choices.
+
+    Raises InputError for unknown and contradictory settings.
+    """
 
     name: ClassVar[str] = "segment"
     parts: ClassVar[str] = "segments"
@@ -62,39 +62,30 @@ class SegmentModel(ChainStructure):
     bounds: ClassVar[Literal["below", "above"] | None] = "below"
     fewest: ClassVar[int] = 2
     lines: ClassVar[tuple[str, ...]] = ("spline", "raw")
-    modal_settings: ClassVar[tuple[str, ...]] = ("wall", "joints", "grading", "theory", "attachment")
 
     beam: Beam
     n_segments: int
     _: KW_ONLY
-    wall: Wall = "gregory"
-    """Compliances of the joints at a clamped end, in l/EI: "gregory" 3/8, 7/6, 23/24; "half" 1/2, the literature's."""
-    joints: Joints = "series"
-    """Eq. (1) corrected ("series") or as "printed"; "tensioned" is of order 4 under axial force too."""
-    grading: float = 1.0
+    wall: Wall = DEFAULT.wall
+    joints: Joints = DEFAULT.joints
+    grading: float = DEFAULT.grading
     """Length of a section's last link over its first; lengths are in geometric progression."""
-    theory: Theory = "euler-bernoulli"
-    attachment: Attachment = "reciprocal"
-    """Distribution of attached bodies and springs: over four joints, order 4, or to their rigid link ("lever")."""
-    load: Load = "reciprocal"
-    """Distribution of point forces: over four joints, order 4, or the two joints of their link ("lever"), order 2."""
-    reading: Reading = "corrected"
-    """Deflection between joints: spline through "corrected" or "raw" joint positions, or the rigid "links"."""
-    joint_dashpot: float = 0.0
+    theory: Theory = DEFAULT.theory
+    attachment: Attachment = DEFAULT.attachment
+    load: Load = DEFAULT.load
+    reading: Reading = DEFAULT.reading
+    joint_dashpot: float = DEFAULT.joint_dashpot
     """c of a dashpot at every joint, N m s, in harmonic motion."""
 
     def __post_init__(self) -> None:
         for name in ("n_segments", "grading", "joint_dashpot"):
             object.__setattr__(self, name, python_scalar(getattr(self, name)))
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
-        for name, words in _WORDS.items():
-            check_choice(name, getattr(self, name), words)
-        check_number("joint_dashpot", self.joint_dashpot, "N m s, 0 means none", at_least=0, at_most=1e50)
-        self.check_theory()
+        super().__post_init__()
         check_division(self.beam, self.n_segments, self.grading)
-        if self.wall == "welded" and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if WALLS[self.wall].first and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
-                "wall = 'welded' is for uniform beams of equal segments without attachments: choose another wall"
+                f"wall = {self.wall!r} is for uniform beams of equal segments without attachments: choose another wall"
             )
         if self.joints == "tensioned" and self.theory == "timoshenko" and self.n_segments < _FEWEST_CORRECTED:
             raise InputError(
@@ -107,83 +98,6 @@ class SegmentModel(ChainStructure):
     def count(self) -> int:
         """N."""
         return self.n_segments
-
-    @property
-    def unit(self) -> float:
-        """Mean length of a link, m; wall = "welded": half a link at each clamped end is not counted."""
-        halves = self.beam.supports.count("clamped") if self.wall == "welded" else 0
-        return self.beam.length / (self.n_segments + 0.5 * halves)
-
-    # --- Links, joints and walls ---------------------------------------------------------------------------------
-
-    @cached_property
-    def links(self) -> Parts:
-        """Lengths and properties of the links; steps of the beam are at joints."""
-        return divide(self.beam, self.n_segments, self.grading)
-
-    @cached_property
-    def chain(self) -> Chain:
-        """Links and joints without attachments. Raises InputError where the stiffness of a joint is not positive."""
-        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
-        compliances = self._corrected_compliances.copy()
-        compliances[[0, -1]] += self.attached.end_springs
-        inertias = link_inertia(masses, lengths)
-        if self._thick:
-            inertias = inertias + self._rotary_inertias
-        return Chain(
-            supports=self.beam.supports,
-            unit=self.unit,
-            start=0.5 * (self.wall == "welded" and self.beam.supports[0] == "clamped"),
-            lengths=lengths,
-            compliances=compliances,
-            masses=masses,
-            inertias=inertias,
-            elastic=self.attached.elastic,
-            flexibilities=lengths / self.links.stiffnesses if self.beam.stepped else None,
-            reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
-            if any(self.attached.elastic)
-            else None,
-        )
-
-    def _joint_compliances(self, stiffnesses: Array) -> Array:
-        """1/k of joints 0..N by Eq. (1), (N + 1,), times the wall factors; `stiffnesses` (N,) are EI of the links."""
-        lengths = self.links.lengths
-        halves = 0.5 * lengths / stiffnesses
-        inner = halves[:-1] + halves[1:]
-        if self.joints == "printed":
-            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) is dimensionally right but pairs the wrong links:
-            # order 1 where both I and E / l differ; for EI without E, E is 1 and "printed" equals "series"
-            e, i = self.links.moduli, self.links.second_moments
-            inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
-        return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
-
-    @cached_property
-    def _wall_factors(self) -> Array:
-        return wall_factors(self.beam.supports, self.n_segments, self.wall, self.attached.elastic)
-
-    @cached_property
-    def _beam_compliances(self) -> Array:
-        """1/k of the joints with the beam's bending stiffness, (N + 1,)."""
-        return self._joint_compliances(self.links.stiffnesses)
-
-    @cached_property
-    def _corrected_compliances(self) -> Array:
-        """1/k of tensioned joints, (N + 1,): EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
-        if self.joints != "tensioned" or not self.beam.tension:
-            return self._beam_compliances
-        lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
-        compliances = self._joint_compliances(stiffnesses)
-        for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
-            if support == "clamped" or turns:
-                excess = self._tension * lengths[-end] * tension_excess(self.wall) / 12.0
-                compliances[-end] = 1.0 / (1.0 / compliances[-end] - excess / self._wall_factors[-end] ** 2)
-        if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
-            raise InputError(
-                f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
-                f"{self.n_segments} segments (limit 12 EI/l^2, at a clamped wall two thirds of it): give more segments "
-                "or choose joints = 'series'"
-            )
-        return compliances
 
     def rigid_chain(self, *, in_space: bool = False, damping: float = 0.0) -> "RigidChain":
         """Joints in N m/rad, links with mass and inertia, in plain units, for other engines (`engines.writers`).
@@ -326,12 +240,12 @@ class SegmentModel(ChainStructure):
 
     def expected_order(self) -> int | None:
         """Order of the frequencies in N (`segments.orders`); None where it depends on N."""
-        return order_of(self.beam, **{name: getattr(self, name) for name in self.modal_settings})
+        return order_of(self.beam, **{name: getattr(self, name) for name in ModelSettings.__struct_fields__})
 
     def wavenumber(self, frequency_hz: float) -> complex:
         """Wavenumber of waves along equal links of the beam's own section, 1/m, with the losses of the joints."""
-        omega, own, loss = 2.0 * pi * frequency_hz, self.beam.base_section, 1.0 + 1j * self.beam.loss_factor
-        rigidity, inertia = own.shear_stiffness or 0.0, own.rotary_inertia or 0.0
+        omega, section, loss = 2.0 * pi * frequency_hz, self.beam.base_section, 1.0 + 1j * self.beam.loss_factor
+        rigidity, inertia = section.shear_stiffness or 0.0, section.rotary_inertia or 0.0
         k = phase(
             (omega / self._omega_unit) ** 2,
             loss + 1j * self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness,

@@ -40,11 +40,9 @@ from verify.waves.operating_point import OperatingPoint, best_frequency, maximum
 from verify.waves.two_waves import ROUNDING, TwoWaves, Waveguide, fit_waves, fitted_wavenumber, two_waves
 from verify.waves.window import Window, check_clear, check_wavenumber, middle_half
 
-__all__ = [
-    "BestDrive", "DrivenCase", "OperatingPoint", "TwoWaves", "WaveMeasures", "best_drive",
-    "best_frequency", "ellipse", "fit_waves", "matched_device", "maximum_crest_speed", "measure", "measure_series",
-    "middle_half", "phasors", "power_imbalance", "surface_motion", "two_waves",
-]  # fmt: skip
+__all__ = ["BestDrive", "DrivenCase", "OperatingPoint", "TwoWaves", "WaveMeasures", "axis_ratio", "best_drive"]
+__all__ += ["best_frequency", "ellipse", "fit_waves", "matched_device", "maximum_crest_speed", "measure"]
+__all__ += ["measure_series", "middle_half", "phasors", "surface_motion", "two_waves"]
 POINTS_PER_HALF_WAVE = 24
 """Points per half wavelength for tables of surface quantities and as start of the search for extremes."""
 POINTS_PER_PART = 8  # points per segment or element in the search for extremes: a discrete field ripples at that length
@@ -68,6 +66,8 @@ class WaveMeasures:
     """(n,), m: 24 points per half wavelength of the exact beam, or the positions of a time series."""
     fine: Array
     """(m,), m: positions that separate the extremes of the field."""
+    field: HarmonicField | None = None
+    """The field in which the wave is; None of a time series."""
 
     @property
     def reflection(self) -> float:
@@ -138,6 +138,41 @@ class WaveMeasures:
         waves = self.waves
         return float(self.guide.energy_flux(self.omega, waves.wavenumber, waves.forward, waves.backward))
 
+    @cached_property
+    def power_imbalance(self) -> float:
+        """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
+
+        The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError for a
+        standing wave, and InputError for a time series, a beam with sections and devices against rotation.
+        """
+        field, beam, middle = self.field, self.guide.beam, 0.5 * sum(self.window)
+        if field is None:
+            raise InputError(
+                "a power balance needs the forces of a field, which a time series does not have: measure one"
+            )
+        if field.couples:
+            raise InputError(
+                f"device.position = {field.couples[0]!r}: a power balance models no device against rotation, leave it "
+                "out"
+            )
+        beam.check_features("a power balance", ("mass", "spring", "tension", "foundation"))
+        self.waves.check_travelling()
+        left = [force for force in field.forces if force.position <= self.window[0]]
+        speeds = 1j * field.omega * field.deflection([force.position for force in left])
+        power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
+        # the third derivative jumps at a force, the second at a couple: quadrature between the jumps
+        jumps = [load.position for load in (*field.forces, *beam.attached)]
+        cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
+        edges = np.unique([*cells, *(x for x in jumps if x < middle)])
+        points, weights = np.polynomial.legendre.leggauss(8)
+        half = 0.5 * np.diff(edges)[:, None]
+        x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()
+        lost = beam.bending_stiffness * float(abs(field.rotations(x, 1)) ** 2 @ weights)
+        if field.theory == "timoshenko" and beam.base_section.shear_stiffness is not None:
+            shear = abs(field.slope(x) - field.rotation(x)) ** 2
+            lost += beam.base_section.shear_stiffness * float(shear @ weights)
+        return float((power - 0.5 * field.omega * beam.loss_factor * lost) / self.energy_flux - 1.0)
+
 
 def measure(field: HarmonicField, window: Window, wave_number: complex | None = None) -> WaveMeasures:
     """The wave of a field in a window (a, b) between the forces, m.
@@ -159,6 +194,7 @@ def measure(field: HarmonicField, window: Window, wave_number: complex | None = 
         section_rotation=field.rotation,
         x=np.linspace(start, end, n),
         fine=np.linspace(start, end, max(n, n_fine)),
+        field=field,
     )
 
 
@@ -245,6 +281,11 @@ def surface_motion(beam: Beam, rotation: ComplexArray, x: Numbers) -> ComplexArr
     return np.asarray(-surface_distance_at(beam, x) * np.asarray(rotation, dtype=complex))
 
 
+def axis_ratio(field: HarmonicField, x: Numbers) -> Array:
+    """Signed axis ratio of the path of the surface at x (m), (n,): negative for a wave to +x. Raises InputError."""
+    return ellipse(surface_motion(field.beam, field.rotation(x), x), field.deflection(x))[0]
+
+
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
     """(signed axis ratio tan chi, tilt in degrees, S3) of the paths u_x = `across`, u_y = `up`, m, of equal shape.
 
@@ -257,32 +298,3 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
     sine = np.where(total > 0, product.imag / np.where(total > 0, total, 1.0), 0.0)
     chi = 0.5 * np.arcsin(np.clip(sine, -1.0, 1.0))
     return np.tan(chi), 0.5 * np.rad2deg(np.arctan2(product.real, difference)), product.imag
-
-
-def power_imbalance(field: HarmonicField, measures: WaveMeasures) -> float:
-    """(power of the forces left of the window - losses up to its middle - flux through it) over that flux.
-
-    The loss factor acts on bending, EI |psi'|^2, and shear, kappa G A |w' - psi|^2. Raises NoFigureError for a standing
-    wave, and InputError for a beam with sections and for devices against rotation.
-    """
-    beam, middle = field.beam, 0.5 * sum(measures.window)
-    if field.couples:
-        raise InputError(
-            f"device.position = {field.couples[0]!r}: a power balance models no device against rotation, leave it out"
-        )
-    beam.check_features("a power balance", ("mass", "spring", "tension", "foundation"))
-    measures.waves.check_travelling()
-    left = [force for force in field.forces if force.position <= measures.window[0]]
-    speeds = 1j * field.omega * field.deflection([force.position for force in left])
-    power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
-    # the third derivative jumps at a force, the second at a couple: quadrature between the jumps
-    jumps = [one.position for one in (*field.forces, *beam.attached)]
-    cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
-    edges = np.unique([*cells, *(x for x in jumps if x < middle)])
-    points, weights = np.polynomial.legendre.leggauss(8)
-    half = 0.5 * np.diff(edges)[:, None]
-    x, weights = (edges[:-1, None] + half * (points + 1.0)).ravel(), (half * weights).ravel()
-    lost = beam.bending_stiffness * float(abs(field.rotations(x, 1)) ** 2 @ weights)
-    if field.theory == "timoshenko" and beam.base_section.shear_stiffness is not None:
-        lost += beam.base_section.shear_stiffness * float(abs(field.slope(x) - field.rotation(x)) ** 2 @ weights)
-    return float((power - 0.5 * field.omega * beam.loss_factor * lost) / measures.energy_flux - 1.0)

@@ -11,7 +11,7 @@ from verify import Beam, InputError
 from verify.actuators.shunt import Load, ShuntedMode, absorbing_load
 from verify.actuators.transducers import Stack
 from verify.quantities import evaluate
-from verify.waves.impedance_matching import ending, reflection
+from verify.waves.impedance_matching import ending
 
 FIFTH = ShuntedMode(coupling=0.2)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -114,7 +114,7 @@ def test_loads_are_circuits():
 def test_the_absorbing_load_of_a_stack_has_no_reflection_and_is_passive():
     port, end = STACK.port(OMEGA), ending(PAPER, 4276.0, DISTANCE)
     load = absorbing_load(port, end.matched, OMEGA)
-    assert reflection(port.loaded_impedance(load.admittance(OMEGA)), end) < 1e-9
+    assert end.reflection(port.loaded_impedance(load.admittance(OMEGA))) < 1e-9
     with pytest.raises(InputError, match="ohm, which is active"):
         absorbing_load(port, -end.matched.conjugate(), OMEGA)
 
@@ -131,7 +131,7 @@ def test_quantities_without_an_actuator():
     for changed, sentence in (
         ({}, "give coupling, or mode and position"),
         ({"mode": 1, "position": 0.2}, "kind = 'patch'"),
-        ({"coupling": 0.2, "circuit": "resistor", "figure": "inductance"}, "inductance: the optimum"),
+        ({"coupling": 0.2, "circuit": "resistor", "figure": "inductance"}, "inductance: the load"),
         ({"coupling": 1.2}, "coupling = 1.2 has no optimum of two equal peaks"),
         ({"coupling": 0.2, "negative": 0.4}, "negative = 0.4"),
     ):

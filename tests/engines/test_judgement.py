@@ -10,10 +10,11 @@ from msgspec.structs import replace
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
 from verify import Beam, Section, SegmentModel
 from verify.cli import status_of
-from verify.engines.description import RULES, describe
+from verify.engines.description import describe
 from verify.engines.judgement import judge_file
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError
+from verify.settings import wall_label
 
 pytest.importorskip("mujoco")
 DATA = Path(__file__).parent / "data"
@@ -33,7 +34,7 @@ def test_rule_at_the_wall_is_named_and_corrected_to_the_best_chain(tmp_path, wal
     path, out, best = tmp_path / f"beam.{suffix}", tmp_path / f"out.{suffix}", describe(STEEL, 14)
     write(describe(STEEL, 14, wall=wall), path)
     found = judge_file(path, None, corrected=out).data["chains"][0]
-    assert found["rule"] == f"{RULES[wall]} at the wall"
+    assert found["rule"] == wall_label(wall)
     assert bool(found["faults"]) == (wall != "gregory")
     assert found["stiffness"] == pytest.approx(358.4, rel=1e-9)
     assert found["error"] == pytest.approx(describe(STEEL, 14, wall=wall).errors(n_modes=5), abs=1e-9)
@@ -53,7 +54,7 @@ def test_first_link_fixed_and_its_adapted_joints(tmp_path, frame):
     text = re.sub('(?s)("link0" pos=")[^ ]+( .*?<inertial pos=")[^ ]+( .*?"link1" pos=")[^ ]+',
                   rf"\g<1>{frame / 14}\g<2>{(0.5 - frame) / 14}\g<3>{(1 - frame) / 14}", text)  # fmt: skip
     found, warnings, out = judged(tmp_path, text)
-    assert found["faults"] == ["first link fixed at the wall"]
+    assert found["faults"] == [wall_label("rigid")]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((0.0768, 1.04e-3), rel=0.02)
     assert "13380.3, 4300.8, 5235.76 N m/rad" in warnings[0]
     assert mujoco_hz(out)[0] / found["exact_hz"][0] - 1 == pytest.approx(found["corrected_error"][0], rel=1e-6)
@@ -92,7 +93,7 @@ def test_default_class_and_tip_mass(tmp_path):
     text = text.replace(' stiffness="5017.6" damping="0.0"', "")
     tip = '<body pos="0.0714 0 0"><geom size="0.01" mass="0.4"/></body><site name="tip"'
     found, _, out = judged(tmp_path, text.replace('<site name="tip"', tip))
-    assert found["faults"] == ["EI/l at the wall"]
+    assert found["faults"] == [wall_label("full")]
     assert abs(found["corrected_error"][0]) < 2e-6
     bare = judge_file(out, STEEL)
     assert bare.data["chains"][0]["faults"] == ["bodies 0.4 kg heavier than those of the beam"]
@@ -106,13 +107,14 @@ def test_public_models():
     beams = {"rod.xml": round_bar, "hose.xml": None, "tether.sdf": None}
     rod, hose, tether = (judge_file(DATA / name, beam).data["chains"] for name, beam in beams.items())
     square = "stiffness 1.6977 times that of the beam: a square section's for a round one"
-    assert [text.split(",")[0] for text in rod[0]["faults"][:2]] == ["first link fixed at the wall", square]
+    assert [text.split(",")[0] for text in rod[0]["faults"][:2]] == [wall_label("rigid"), square]
     assert hose[0]["faults"] == [
-        "EI/l at the wall",
+        wall_label("full"),
         "stiffness from the mean length in place of two half links in series",
     ]
     # bodies between two hinges at one place have 5 % of the mass and a quarter of the inertia
-    assert [[text.split()[0] for text in one["faults"]] for one in tether] == [["EI/l", "inertia", "centre"]] * 2
+    assert [one["faults"][0] for one in tether] == [wall_label("full")] * 2
+    assert [[text.split()[0] for text in one["faults"][1:]] for one in tether] == [["inertia", "centre"]] * 2
     assert "cancel at mode 1" in judge_file(DATA / "hose.xml", None).warnings[0]
     errors = [one["error"][0] for one in (*rod, *hose, *tether)]
     assert errors == pytest.approx([0.3709, -0.0356, -0.1383, -0.1383], abs=1e-4)
@@ -129,7 +131,7 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     joint = '<joint name="j{i}" axis="0 -1 0" stiffness="0.242" damping="0.092"/>'
     geom = '<geom type="sphere" pos="0 0 -0.072" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
     found, warnings, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
-    assert [text.split()[0] for text in found["faults"]] == ["EI/l", "inertia", "centre"]
+    assert [text.split(" ")[0] for text in found["faults"]] == ["wall", "inertia", "centre"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
     assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
@@ -162,7 +164,7 @@ def test_beam_with_a_step_needs_a_scene(tmp_path):
     with pytest.raises(InputError, match="masses and stiffnesses of the links vary"):
         judge_file(path, None)
     found = judge_file(path, stepped).data["chains"][0]
-    assert found["faults"] == ["EI/l at the wall"]
+    assert found["faults"] == [wall_label("full")]
     assert found["error"] == pytest.approx(describe(stepped, 14, wall="full").errors(n_modes=5), abs=1e-9)
 
 
@@ -188,12 +190,12 @@ def test_ball_joints_and_the_modulus_of_round_links_are_named(tmp_path):
     joint = '<joint type="ball" stiffness="2333.3333"/>'
     geom = '<geom type="cylinder" fromto="0 0 0 .025 0 0" size=".005" density="2700" contype="0" conaffinity="0"/>'
     found, warnings, out = judged(tmp_path, chain_text(20, joint, geom, ".025 0 0"))
-    assert found["faults"] == ["EI/l at the wall"]
+    assert found["faults"] == [wall_label("full")]
     assert "a ball joint is read as three hinges" in warnings[0]
     assert "E = 118.8 GPa, or 70 GPa if it is a square section's" in warnings[1]
     again = judge_file(out, None)
     assert again.data["passed"]
-    assert [one["rule"] for one in again.data["chains"]] == ["Gregory's weights at the wall"] * 2
+    assert [one["rule"] for one in again.data["chains"]] == [wall_label("gregory")] * 2
 
 
 HINGE = (
@@ -233,7 +235,7 @@ def test_command_and_files_without_springs(tmp_path, capsys):
     assert "the format stays" in capsys.readouterr().err
     write(describe(STEEL, 14, wall="half"), path)
     assert status_of(["compare", "--beam", PHRASE, str(path), "--json"]) == 1
-    assert json.loads(capsys.readouterr().out)["chains"][0]["rule"] == "2EI/l at the wall"
+    assert json.loads(capsys.readouterr().out)["chains"][0]["rule"] == wall_label("half")
     path.write_text(re.sub("<gazebo.*?</gazebo>", "", path.read_text()))
     assert status_of(["compare", str(path)]) == 2
     assert "no hinge has a stiffness" in capsys.readouterr().err

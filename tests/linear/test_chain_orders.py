@@ -11,7 +11,9 @@ from msgspec.structs import replace
 
 from tests.beams import ABSTRACT, mass, spring, supported
 from verify import Beam, ExactModel, PointMass, PointSpring, Section, SegmentModel
-from verify.options import WALLS
+from verify.engines.description import describe
+from verify.errors import InputError
+from verify.settings import WALLS, WallRule
 
 LEVER, TENSIONED, SHEAR = {"attachment": "lever"}, {"joints": "tensioned"}, {"theory": "timoshenko"}
 RAYLEIGH, GRADED = {"theory": "rayleigh"}, {"grading": 2.0}
@@ -42,7 +44,7 @@ def add(name, beam, mode, counts, due, low, high, spread=1, **settings):
 
 # walls
 for pair in combinations_with_replacement("PCFG", 2):
-    for wall in WALLS:
+    for wall in (name for name, rule in WALLS.items() if not rule.fault):
         name, settings = f"{pair[0]}{pair[1]} {wall}", {"wall": wall}
         if "C" not in pair:
             add(name, on(pair), 2, (40, 80), 4, -0.04, 0.04, **settings)
@@ -84,6 +86,7 @@ for name, beam, mode, middle in (
     ("tip body", on("CF", **TIP), 1, 0.0),
     ("elastic clamp", on("FF", spring=spring(ABSTRACT, 0.0, 300.0, 5.0)), 3, -0.05),
     ("mass at a guided end", on("GP", mass=mass(ABSTRACT, 0.0, 0.4)), 3, 0.0),
+    ("spring at a guided end", on("GF", spring=spring(ABSTRACT, 0.0, 20.0)), 2, 0.0),
     ("spring at a free end", on("PF", spring=spring(ABSTRACT, 1.0, 20.0)), 2, 0.0),
     ("mass at a free end", on("FF", mass=mass(ABSTRACT, 0.0, 0.4)), 1, 0.0),
     ("rotational spring at a pin", on("PP", spring=spring(ABSTRACT, 0.0, rotational=5.0)), 1, -0.15),
@@ -195,3 +198,21 @@ def test_tensioned_joints_remove_the_second_order_of_a_thick_chain_with_a_clamp(
         for joints in ("tensioned", "series")
     )
     assert abs(tensioned) < 0.015 * abs(series)
+
+
+@pytest.mark.parametrize(
+    ("weights", "due", "band"),
+    [((17 / 48, 59 / 48, 43 / 48, 49 / 48), 4, 0.3), ((0.2, 1.3), 2, 0.1), ((0.7,), 1, 0.1)],
+)
+def test_a_new_wall_rule_is_a_row_and_its_weights_give_its_order(monkeypatch, weights, due, band):
+    """The first: the end weights of differences of order 4 with summation by parts (Strand, 1994)."""
+    beam = on("CF")
+    with monkeypatch.context() as added:
+        added.setitem(WALLS, "new", WallRule("for this test", weights))
+        model = SegmentModel(beam, 40, wall="new")
+        assert model.expected_order() == due
+        assert order(beam, 3, (160, 320), wall="new") == pytest.approx(due, abs=band)
+        chain = describe(beam, 40, wall="new").frequencies_hz(n_modes=3)
+        np.testing.assert_allclose(chain, model.modes(3).frequencies_hz, rtol=1e-9)
+    with pytest.raises(InputError):
+        SegmentModel(beam, 40, wall="new")

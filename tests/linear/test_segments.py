@@ -12,7 +12,7 @@ from tests.beams import ABSTRACT, supported
 from tests.reference.transfer import state
 from verify import Beam, ExactModel, PointForce, PointMass, PointSpring, Section, SegmentModel
 from verify.errors import InputError, NoFigureError
-from verify.options import SUPPORTS
+from verify.problem.supports import SUPPORTS
 
 L, EI, RHO_A, RHO_I, GA = 0.73, 3.7, 0.31, 3e-5, 2e4
 UNORDERED = ["".join(pair) for pair in combinations_with_replacement("PCFG", 2)]

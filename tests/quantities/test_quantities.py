@@ -9,20 +9,22 @@ from msgspec.structs import asdict, replace
 
 from verify.actuators.patch import Patch
 from verify.actuators.transducers import Stack
+from verify.analysis.comparison import mode_errors
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analytic_modes import ExactModel
 from verify.chain.slider_on_chain import slide_on_chain
 from verify.dynamics.arguments import Excitation, Keep, Step
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
+from verify.estimate import Estimate, as_plain, as_text
 from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam, PointForce
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
-from verify.quantities.base import Estimate, as_plain, as_text
 from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
+from verify.segment_model import SegmentModel
 from verify.studies.identify import Identify, Synthetic
 from verify.studies.motion import Motion
 from verify.travelling_wave import measure
@@ -225,6 +227,10 @@ def test_equals_direct_call():
     fem = float(HermiteModel(STRIP, 9).modes(3).frequencies_hz[2])
     asked = {**FEM, "mode": np.int64(3)}
     assert evaluate("mode.frequency_error", asked, SCENES["bare"], CACHES["bare"]) == (fem - exact) / exact
+    paired = mode_errors(SegmentModel(STRIP, 12).modes(5), ExactModel(STRIP).modes(4))
+    for name, errors in {"frequency": paired.frequency, "shape": paired.shape(), "curvature": paired.curvature}.items():
+        value = evaluate(f"mode.{name}_error", {"model": "segment", "count": 12, "mode": 3}, BARE, CACHES["bare"])
+        assert errors[2] == pytest.approx(value, rel=1e-9)
     settings = {"model": "segment", "count": 12, "slider": RIDER, "step": Step(per_period=40), "keep": Keep(samples=2)}
     run = simulate(DAMPED, Excitation(FORCES, 731.0), 1.1e-3, **settings)
     assert figure("slider.displacement") == run.displacement

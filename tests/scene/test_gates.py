@@ -19,7 +19,7 @@ from verify.scene.run import plan, run_gate
 
 @pytest.fixture(autouse=True)
 def _own_quantities(monkeypatch):
-    monkeypatch.setattr(QUANTITIES, "_members", dict(QUANTITIES._members))
+    monkeypatch.setattr(QUANTITIES, "_members", dict(QUANTITIES))
 
 
 SCENE = Scene(name="strip", beam=STRIP)

@@ -15,7 +15,7 @@ from verify.errors import InputError
 from verify.linear.field import phasor
 from verify.problem.device import of_impedance
 from verify.travelling_wave import DrivenCase, matched_device, measure
-from verify.waves.impedance_matching import ending, reflection
+from verify.waves.impedance_matching import ending
 
 L = 0.83
 STRIP = replace(beams.STRIP, length=L)
@@ -166,7 +166,7 @@ def test_the_reflection_of_a_device_is_that_of_six_waves(hertz, d, resistance, r
     """Rotational impedances of the size EI k / omega, lateral ones of EI k^3 / omega. With loss k is complex."""
     k = (STRIP.mass_per_length * (2.0 * np.pi * hertz) ** 2 / STRIP.bending_stiffness) ** 0.25
     beam, impedance = replace(STRIP, loss_factor=loss), complex(resistance, reactance) / (k**2 if turning else 1.0)
-    found = reflection(impedance, ending(beam, hertz, d, support, turning=turning))
+    found = ending(beam, hertz, d, support, turning=turning).reflection(impedance)
     assert found == pytest.approx(wave_reflection(beam, hertz, d, impedance, support, turning), abs=3e-7)
 
 
@@ -181,7 +181,7 @@ def test_the_exact_beam_with_loss_has_the_reflection_of_its_device(ratio, loss, 
     field = ExactModel(beam).harmonic(PointForce(position=0.03), hertz, devices=device)
     waves = measure(field, (0.3, 0.6), field.wavenumber).waves
     at_device = waves.reflection * abs(np.exp(2j * waves.wavenumber * (L - d - 0.45)))
-    assert at_device == pytest.approx(reflection(impedance, end), rel=1e-4)
+    assert at_device == pytest.approx(end.reflection(impedance), rel=1e-4)
 
 
 FINE = {

@@ -63,6 +63,13 @@ class Load(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         total = (1.0 / r if r else 0.0, c or 0.0)
         return (total, (1.0,)) if l_ is None else ((1.0 / l_, *total), (0.0, 1.0))
 
+    def part(self, name: str) -> float:
+        """Resistance (ohm), inductance (H) or capacitance (F). Raises InputError where the load has none."""
+        value: float | None = getattr(self, name)
+        if value is None:
+            raise InputError(f"{name}: the load {self!r} has none, choose another circuit")
+        return value
+
     def admittance(self, omega: Any) -> Any:
         """Current over voltage at angular frequencies (rad/s), S."""
         above, below = (sum(c * (1j * omega) ** i for i, c in enumerate(row)) for row in self.rational)
@@ -101,6 +108,11 @@ class ShuntedMode(msgspec.Struct, frozen=True, kw_only=True):
         """1 + K^2 X, stiffness over that with short-circuited electrodes, at angular frequencies (rad/s)."""
         own = 1j * omega * self.capacitance
         return 1.0 + self.coupling**2 * own / (own + load.admittance(omega))
+
+    def loss_factor(self, load: Load) -> float:
+        """Im/Re of the stiffness at `omega`."""
+        stiffness = complex(self.stiffness(load, self.omega))
+        return stiffness.imag / stiffness.real
 
     def response(self, load: Load, omega: Any) -> Any:
         """H at angular frequencies (rad/s): deflection over the static one with short-circuited electrodes."""

@@ -13,6 +13,7 @@ from verify.exact.error_laws import leading_error
 from verify.linear.modes import Modes
 from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam
+from verify.settings import DEFAULT
 
 if TYPE_CHECKING:
     from verify.dynamics.result import Motion
@@ -44,7 +45,7 @@ def unproven(beam: Beam, settings: Settings = ()) -> str:
     """Reason why segments are not proven to lie below and elements above the exact frequencies; empty if proven."""
     if added := (*beam.features, *("section",) * bool(beam.section)):
         return f"no bound is proven for a beam with beam.{added[0]}, leave it out"
-    chosen = {"theory": EULER, "grading": 1.0, "wall": "gregory"} | dict(settings)
+    chosen = {"theory": EULER, "grading": 1.0, "wall": DEFAULT.wall, **dict(settings)}
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}
     for name, value in chosen.items():
         if value != proven.get(name, value):
@@ -177,11 +178,8 @@ class SolutionCache:
     ) -> float:
         """Relative L2 error of the mass-normalised deflection at the model's nodes. Raises InputError."""
         modes = self.modes(model, count, mode, settings)
-        if reading is not None and reading not in modes.readings:
-            raise InputError(f"reading = {reading!r} is not a reading of {model}: give {', '.join(modes.readings)}")
-        read = modes.readings[reading or next(iter(modes.readings))]
         exact = self.exact_shape(mode, modes.nodes, theory=theory_of(settings))
-        shape = read()[self.paired_index(model, count, mode, settings)]
+        shape = modes.at_nodes(reading)[self.paired_index(model, count, mode, settings)]
         mass = sum(piece.mass_per_length * piece.length for piece in self.beam.pieces)
         return comparison.shape_error(exact, shape, comparison.node_weights(modes.nodes), mass**-0.5)
 

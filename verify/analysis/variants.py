@@ -2,21 +2,23 @@
 
 from collections.abc import Iterable, Mapping
 from itertools import product
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import msgspec
-from msgspec import Meta
 
 from verify.analysis.solution_cache import Settings
 from verify.errors import InputError
 from verify.linear.registry import MODELS, discrete
-from verify.options import Attachment, Joints, Theory, Wall
 from verify.problem.beam import Beam
+from verify.settings import ModelSettings
 
-DEFAULTS: dict[str, str | float] = {"wall": "gregory", "joints": "series", "grading": 1.0}
-DEFAULTS |= {"theory": "euler-bernoulli", "attachment": "reciprocal"}
+_SETTINGS = msgspec.structs.fields(ModelSettings)
+DEFAULTS: dict[str, str | float] = {field.name: field.default for field in _SETTINGS}
 """Settings on which frequencies depend, in the order of labels."""
-Grading: TypeAlias = Annotated[float, Meta(gt=0)]
+if TYPE_CHECKING:
+    _Several = msgspec.Struct
+else:  # a type checker knows no table
+    _Several = msgspec.defstruct("Several", [(f.name, f.type | tuple[f.type, ...], f.default) for f in _SETTINGS])
 
 
 class Variant(msgspec.Struct, frozen=True):
@@ -42,19 +44,8 @@ class Variant(msgspec.Struct, frozen=True):
         return model.build(beam, max(4 * len(beam.pieces), 16), **dict(self.settings)).expected_order()
 
 
-class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Settings of the models; several values of a setting are compared."""
-
-    wall: Wall | tuple[Wall, ...] = "gregory"
-    """Joints of segments at a clamped end."""
-    joints: Joints | tuple[Joints, ...] = "series"
-    """Stiffness of the joints of segments."""
-    grading: Grading | tuple[Grading, ...] = 1.0
-    """Length of a section's last part over its first."""
-    theory: Theory | tuple[Theory, ...] = "euler-bernoulli"
-    """Beam theory of every model."""
-    attachment: Attachment | tuple[Attachment, ...] = "reciprocal"
-    """Distribution of point masses and springs on segments."""
+class Rules(_Several, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """`ModelSettings` of which each may have several values, which are compared."""
 
     def variants(self, models: Iterable[str]) -> tuple[Variant, ...]:
         """Each model with all combinations of its settings. Raises InputError for a setting that no model has."""

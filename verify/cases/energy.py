@@ -12,7 +12,7 @@ from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.motion import check_moved, simulate
 from verify.chain.system import LinkLoad, build_system
-from verify.options import Tip
+from verify.settings import Tip
 from verify.validation import check_integer
 
 BALANCE = "balance of energy; the rest is the error of the time steps"

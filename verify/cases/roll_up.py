@@ -11,7 +11,7 @@ import numpy as np
 from verify.cases.base import case
 from verify.cases.beams import CANTILEVER, EI
 from verify.chain.statics import bend
-from verify.options import Wall
+from verify.settings import Wall
 
 JOINTS = "constant curvature: a joint turns by the moment over its stiffness"
 

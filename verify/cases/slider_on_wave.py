@@ -14,8 +14,8 @@ from verify.cases.wave import OMEGA, K, wave_stage
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.stepping import run_stages
-from verify.options import Kinematics
 from verify.problem.slider import Slider
+from verify.settings import Kinematics
 
 SQUARE = (K * STRIP.surface_distance) ** 2
 

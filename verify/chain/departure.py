@@ -19,8 +19,8 @@ from verify.chain.linearisation import linearise
 from verify.chain.motion import ChainMotion, Progress, from_rest
 from verify.chain.system import ChainSystem, build_system, link_at
 from verify.errors import InputError
-from verify.options import Inertia, Links, Load
 from verify.problem.beam import Beam, PointForce
+from verify.settings import Inertia, Links, Load
 
 NODE = 1e-9
 """Displacement over that of the free beam, F / (m omega^2), below which a position is a node within rounding."""

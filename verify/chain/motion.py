@@ -18,9 +18,9 @@ from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
-from verify.options import ChainReading
 from verify.segments.chain import Motions, link_mass, plain_factors
 from verify.segments.reading import contact_line
+from verify.settings import ChainReading
 from verify.validation import check_number
 
 if TYPE_CHECKING:

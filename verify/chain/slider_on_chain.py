@@ -27,9 +27,9 @@ from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
 from verify.dynamics.stepping import Assembly, Run, response_of
 from verify.errors import InputError, shown
-from verify.options import Links, Load
 from verify.problem.beam import Beam
 from verify.segments.reading import contact_line
+from verify.settings import Links, Load
 from verify.validation import check_integer, check_number
 
 if TYPE_CHECKING:

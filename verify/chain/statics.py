@@ -17,8 +17,8 @@ from verify.blas import one_blas_thread
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
-from verify.options import Joints, Wall
 from verify.problem.beam import Beam
+from verify.settings import DEFAULT, Joints, Wall
 from verify.validation import check_integer, check_number
 
 RESIDUAL = 1e-9  # tolerance of the residual moment, relative to the largest moment in the chain
@@ -235,8 +235,8 @@ def bend(
     load: Numbers = 0.0,
     *,
     moment: float = 0.0,
-    wall: Wall = "gregory",
-    joints: Joints = "series",
+    wall: Wall = DEFAULT.wall,
+    joints: Joints = DEFAULT.joints,
 ) -> Bent:
     """Large bending of a cantilever of `count` links under a dead `load` (N) and a `moment` (N m) at its tip.
 

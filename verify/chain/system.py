@@ -13,11 +13,11 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
-from verify.options import LINKS, Joints, Links, Load, Tip, Wall
 from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
+from verify.settings import DEFAULT, LINKS, WALLS, Joints, Links, Load, Tip, Wall
 from verify.validation import check_choice, check_number
 
 
@@ -88,8 +88,8 @@ def build_system(
     frequency_hz: float = 0.0,
     *,
     load: Load = "lever",
-    wall: Wall = "gregory",
-    joints: Joints = "series",
+    wall: Wall = DEFAULT.wall,
+    joints: Joints = DEFAULT.joints,
     joint_dashpot: float = 0.0,
     axial_inertia: bool = True,
     links: Links = "rigid",
@@ -107,8 +107,8 @@ def build_system(
             f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free "
             "or pinned (as a roller); give such a pair, mirrored where need be"
         )
-    if wall == "welded":
-        raise InputError("wall = 'welded' is for the linear chain: choose another wall")
+    if wall in WALLS and WALLS[wall].first:
+        raise InputError(f"wall = {wall!r} is for the linear chain: choose another wall")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: a nonlinear chain has no complex modulus, give 0")
     beam.check_features("the nonlinear chain", ("section",))

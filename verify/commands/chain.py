@@ -20,19 +20,21 @@ from verify.commands.shared import (
     show,
 )
 from verify.convert import typed
-from verify.engines.description import MOST_LINKS, RULES, RigidChain, describe
+from verify.engines.description import MOST_LINKS, RigidChain, describe
 from verify.engines.judgement import judge_file
 from verify.engines.writers import data, table, write
 from verify.errors import InputError, printable
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 from verify.scene.file import load_beam
+from verify.settings import DEFAULT, WALLS, wall_label
 from verify.validation import Relative
 
 FIRST = 4
 """Joints that the terminal always shows."""
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
+RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
 
 
 @click.command(cls=BeamCommand)
@@ -41,7 +43,9 @@ COMPARED = "gregory", "half", "full", "rigid"
 @click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
 @click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
 @click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
-@click.option("--wall", default="gregory", show_default=True, metavar="RULE", help="Joints at a clamped end.")
+@click.option(
+    "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
+)
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
@@ -98,7 +102,7 @@ def judge_chain(
         raise SystemExit(GATE_FAILED)
 
 
-def fewest(beam: Beam, mode: int, error: float, wall: str = "gregory", in_space: bool = False) -> int:
+def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
     """The smallest number of links that is within the error at a mode, and so is the next one tried."""
     count, first = max(len(beam.pieces), mode + 1, 2), 0
     while count <= MOST_LINKS:
@@ -115,10 +119,9 @@ def fewest(beam: Beam, mode: int, error: float, wall: str = "gregory", in_space:
 
 def _result(chain: RigidChain, mode: int, *, brief: bool) -> Result:
     """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
-    walls, n = (COMPARED if "clamped" in chain.beam.supports else ()), chain.count
-    others = {
-        RULES[wall]: describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls if wall != chain.wall
-    }
+    held, n = "clamped" in chain.beam.supports, chain.count
+    walls = [name for name in COMPARED if held and name != chain.wall]
+    others = {f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls}
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
     rows, margins = list[tuple[object, ...]](), beam_margins(SolutionCache(chain.beam), (), mode=mode)
@@ -139,7 +142,7 @@ def _result(chain: RigidChain, mode: int, *, brief: bool) -> Result:
                 condition=f"{n} links are enough in {axis}",
             )
         ]
-    rule = f", {RULES[chain.wall]} at the wall" if walls else ""
+    rule = f", {wall_label(chain.wall)}" if held else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and (chain.beam.mass or chain.springs):
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")

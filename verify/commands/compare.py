@@ -13,8 +13,8 @@ from verify.compare.shapes import compare_shapes, read_mesh
 from verify.convert import typed
 from verify.errors import InputError
 from verify.io.mode_files import is_mesh
-from verify.options import THEORIES
 from verify.scene.file import load_beam
+from verify.settings import THEORIES
 from verify.validation import Relative
 
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}

@@ -4,7 +4,8 @@ import click
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
-from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
+from verify.estimate import Estimate, as_plain, as_text
+from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
 from verify.report.result import Result
 from verify.scene.load import load_scene, tables_read
 from verify.studies.sweep import quantity_margins

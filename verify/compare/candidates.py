@@ -11,13 +11,12 @@ from verify.analysis.variants import attached_within, has_wall
 from verify.arrays import Array
 from verify.compare.discrete import STEPS, DiscreteBeam
 from verify.linear.registry import MODELS
-from verify.options import THEORIES, WALLS
 from verify.problem.beam import Beam
+from verify.segments.orders import order_of
+from verify.settings import DEFAULT, THEORIES, WALLS, wall_label
 
 EXACT, CHAIN, ELEMENTS = "analytic", "segment", "fem"
 EULER = "euler-bernoulli"
-FINE = 60
-"""Number of segments for which orders are determined."""
 LABELS = {
     EXACT: "exact beam",
     "links": "rigid links",
@@ -30,27 +29,11 @@ LABELS = {
     "hrz": "Hermite elements, HRZ-lumped mass",
     "linear": "linear Timoshenko elements, consistent mass",
     "linear-lumped": "linear Timoshenko elements, lumped mass",
-    "half": "2EI/l at the wall",
-    "gregory": "Gregory's weights at the wall",
-    "welded": "half a link welded to the wall",
-    "third-order": "weights 5/12, 13/12 at the wall",
-    "five-joint": "five-joint weights at the wall",
-    "full": "EI/l at the wall",
-    "rigid": "first link fixed to the wall",
-    "stiff": "4EI/l at the wall",
     "printed": "Eq. (1) as printed",
-    "centre": "equal links by the section at their centre",
-    "outboard": "joints by EI/l of the outboard link",
-    "inboard": "joints by EI/l of the inboard link",
-    "mean": "joints by the mean EI",
     "tensioned": "joints corrected for tension",
     "lever": "attachments on their rigid link",
-    "rayleigh": "Rayleigh",
-    "timoshenko": "Timoshenko",
-}
-"""Labels of models, mass, walls, joints, attachments and theories."""
-ORDERS = {"half": 2, "welded": 2, "third-order": 3, "full": 1, "rigid": 1, "stiff": 1}
-"""Highest order of convergence by wall rule; others 4."""
+} | STEPS
+"""Labels of models, mass, joints, attachments and theories; those of walls are in `settings`."""
 
 
 class Candidate(msgspec.Struct, frozen=True, kw_only=True):
@@ -63,9 +46,9 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     model: str
     mass: str = ""
     wall: str | None = None
-    joints: str = "series"
-    attachment: str = "reciprocal"
-    theory: str = EULER
+    joints: str = DEFAULT.joints
+    attachment: str = DEFAULT.attachment
+    theory: str = DEFAULT.theory
 
     @property
     def sized(self) -> bool:
@@ -75,13 +58,16 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def label(self) -> str:
         """Name in tables."""
-        words = [self.mass or self.model, self.wall, self.joints, self.attachment]
-        return ", ".join(LABELS[w] for w in [*words, self.theory] if w in LABELS)
+        wall = [wall_label(self.wall)] if self.wall else []
+        rules = [LABELS[rule] for rule in (self.joints, self.attachment) if rule in LABELS]
+        theory = [self.theory.capitalize()] if self.theory != EULER else []
+        return ", ".join([LABELS[self.mass or self.model], *wall, *rules, *theory])
 
     @property
     def packaged(self) -> bool:
         """Whether the candidate is a model of `verify`."""
-        chain = self.mass == "links" and self.wall in (None, *WALLS) and self.joints not in STEPS
+        fault = self.wall is not None and WALLS[self.wall].fault
+        chain = self.mass == "links" and not fault and self.joints not in STEPS
         return not self.sized or self.mass == "consistent" or chain
 
     def order(self, beam: Beam) -> int | None:
@@ -93,10 +79,9 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
         if self.joints in STEPS:
             return None if self.joints == "centre" else 1
-        rules = {"joints": self.joints, "theory": EULER if self.mass == "rod" else self.theory}
-        known = MODELS[CHAIN].build(beam, FINE, **rules, attachment=self.attachment).expected_order()
-        highest = min(ORDERS.get(self.wall or "", 4), 4 if self.mass == "links" else 2)
-        return None if known is None else min(known, highest)
+        rules = {"wall": self.wall or DEFAULT.wall, "joints": self.joints, "attachment": self.attachment}
+        order = order_of(beam, **rules, grading=1.0, theory=EULER if self.mass == "rod" else self.theory)
+        return order if order is None or self.mass == "links" else min(order, 2)
 
 
 def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
@@ -115,16 +100,17 @@ def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
 def _chains(beam: Beam) -> Iterator[Candidate]:
     """Rigid links with all rules; other mass models with the usual wall rules."""
     clamped = "clamped" in beam.supports
-    others = ("rigid", "stiff") if clamped else ()
-    walls = ("half", *(w for w in WALLS if w != "half"), *others) if clamped or has_wall(beam) else (None,)
+    faults = [name for name, rule in WALLS.items() if rule.fault]
+    every = [name for name in WALLS if clamped or name not in faults]
+    walls = sorted(every, key=lambda name: name != "half") if clamped or has_wall(beam) else [None]
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):
-        if (wall == "welded" and (theory != EULER or not clamped)) or (wall in others and theory == "timoshenko"):
+        if (wall == "welded" and (theory != EULER or not clamped)) or (wall in faults and theory == "timoshenko"):
             continue
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=theory)
     common: tuple[str | None, ...] = ("half", "gregory", "full", "rigid") if clamped else (None,)
     if attached_within(beam):
-        for joints, wall in product(rules, [wall for wall in common if wall not in others]):
+        for joints, wall in product(rules, [wall for wall in common if wall not in faults]):
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
     for joints, wall in product(STEPS if beam.stepped else (), common):
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints)
@@ -139,8 +125,8 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
     """First elastic frequencies of a candidate, (n_modes or fewer,), Hz; cached, read-only. Raises InputError."""
     if candidate.packaged:
-        rules = {name: getattr(candidate, name) for name in ("wall", "joints", "attachment", "theory")}
-        rules = {name: rule for name, rule in rules.items() if rule not in (None, "series", "reciprocal", EULER)}
+        chosen = {name: getattr(candidate, name, None) for name in MODELS[candidate.model].settings()}
+        rules = {name: rule for name, rule in chosen.items() if rule is not None}
         if count is not None and count < MODELS[candidate.model].fewest:
             return np.empty(0)
         model = MODELS[candidate.model].build(beam, count, **rules)

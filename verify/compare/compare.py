@@ -16,8 +16,8 @@ from verify.compare.report import Entry, result_of
 from verify.compare.sorting import BENDING, Sorted, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
-from verify.options import Support
 from verify.problem.beam import Beam
+from verify.problem.supports import Support
 from verify.report.result import Result
 from verify.scene.file import NamedBeam
 from verify.validation import check_integer

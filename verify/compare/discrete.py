@@ -13,14 +13,15 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.linear.system import StructuralSystem
-from verify.options import WALLS
 from verify.problem.beam import Beam
 
-STEPS = ("centre", "outboard", "inboard", "mean")
-"""Joint rules of equal links with the section at their centre: two half links, EI/l of the link beyond the joint or in
-front of it, mean EI."""
-WALL_COMPLIANCE = {"rigid": 0.0, "stiff": 0.25}
-"""Compliance of the joint at a clamped end, in l/EI: EI/l, first link fixed to the wall, 4EI/l."""
+STEPS = {
+    "centre": "equal links by the section at their centre",
+    "outboard": "joints by EI/l of the outboard link",
+    "inboard": "joints by EI/l of the inboard link",
+    "mean": "joints by the mean EI",
+}
+"""Joint rules of equal links with the section at their centre, and their labels."""
 MASSLESS = 1e-12
 """Rotary inertia over m l^2 in place of zero: negligible, keeps the mass matrix regular."""
 NODE_INERTIA = {"lumped": MASSLESS, "lumped-rotary": 1 / 24, "hrz": 1 / 78}
@@ -59,8 +60,8 @@ class DiscreteBeam:
     def chain_hz(self, n_modes: int, mass: str, wall: str) -> Array:
         """Rigid links with joint springs, Hz: their mass as 'links' with m l^2/12, as 'points', or at the 'joints'."""
         free, compliances, turn = self.free.copy(), self._compliances(wall), self.rotary / self.lengths**2
-        for beside, support in zip((1, -2), self.beam.supports, strict=True):
-            free[beside] &= not (support == "clamped" and wall == "rigid")
+        for beside, end in ((1, 0), (-2, -1)):
+            free[beside] &= compliances[end] > 0.0
         if mass == "joints":
             own, coupled = 0.5 * self.masses + turn, -turn
         else:
@@ -79,8 +80,7 @@ class DiscreteBeam:
         from scipy.sparse import block_array, diags_array, eye_array
 
         compliances, turning = self._compliances(wall), np.ones(self.n, dtype=bool)
-        for end, support in zip((0, -1), self.beam.supports, strict=True):
-            turning[end] &= not (support == "clamped" and wall == "rigid")
+        turning[[0, -1]] &= compliances[[0, -1]] > 0.0
         jointed = np.isfinite(compliances) & (compliances > 0.0)
         chord = [self.slopes[:, self.free], -eye_array(self.n).tocsr()[:, turning]]
         strain = block_array([[None, self.jumps[jointed][:, turning]], chord]).tocsr()
@@ -124,11 +124,7 @@ class DiscreteBeam:
             near, far = far, near
         rules = {"outboard": far, "inboard": near, "mean": 2.0 / (1.0 / near + 1.0 / far)}
         whole = np.concatenate([links[:1], rules.get(self.joints, 0.5 * (near + far)), links[-1:]])
-        rule = wall if wall in WALLS else "welded"  # one joint EI/l
-        whole *= wall_factors(self.beam.supports, self.n, rule)
-        clamped = [support == "clamped" for support in self.beam.supports]
-        whole[[0, -1]] *= np.where(clamped, WALL_COMPLIANCE.get(wall, 1.0), 1.0)
-        return whole
+        return np.asarray(whole * wall_factors(self.beam.supports, self.n, wall))
 
     def _lowest_hz(self, n_modes: int, strain: Any, stiffness: Array, mass: Any, free: Any) -> Array:
         """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then rotations."""

@@ -16,6 +16,7 @@ from verify.compare.sorting import ACROSS, BENDING
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.report.result import Column, Figure, Result, Table
+from verify.settings import WALLS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,9 +122,10 @@ def _change(best: Fit, beam: Beam) -> str:
         half, gregory = (describe(beam, best.count or 1, wall=rule) for rule in ("half", "gregory"))
     except InputError:  # for example with tension, or without a discretisation
         return ""
-    if wall in ("full", "rigid", "stiff") and "clamped" in beam.supports:
+    if wall and WALLS[wall].order == 1 and "clamped" in beam.supports:
         two, *three = (joint.hinges[0].stiffness for joint in (half.joints[0], *gregory.joints[:3]))
-        now = {"full": f"{two / 2:.6g}", "stiff": f"{2 * two:.6g}", "rigid": "fixed"}[wall]
+        weight = WALLS[wall].weights[0]
+        now = f"{0.5 * two / weight:.6g}" if weight else "fixed"
         each = "each wall" if beam.supports == ("clamped", "clamped") else "the wall"
         better = ", ".join(f"{stiffness:.6g}" for stiffness in three)
         texts = [f"the joint at {each} ({now}) to {two:.6g} N m/rad = 2EI/l, or the first three to {better} (Gregory)"]

@@ -16,8 +16,8 @@ from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.reading import UNITS, FrequencyList
 from verify.errors import InputError
 from verify.exact.closed_forms import rod_frequency_hz
-from verify.options import THEORIES
 from verify.problem.beam import Beam, in_plane
+from verify.settings import THEORIES
 
 RIGID = 3e-3
 """Fraction of the next frequency below which leading ones are rigid-body motions, unless the beam has such a gap."""

@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
 from verify.control.controller import Controller
-from verify.errors import NoFigureError
+from verify.errors import InputError, NoFigureError
 from verify.waves.best_drive import PROPORTIONAL
 from verify.waves.driven_case import UnitWaves
 
@@ -40,6 +40,13 @@ class Response(Struct, frozen=True, eq=False):
         late = np.flatnonzero(abs(self.error) > BAND)
         after = int(late[-1]) + 1 if len(late) else 0
         return float(self.times[after]) if after <= 0.9 * len(self.command) else None
+
+    @property
+    def settled_after(self) -> float:
+        """`settling_time`, s. Raises InputError where the response does not settle."""
+        if (seconds := self.settling_time) is None:
+            raise InputError("duration: the response does not settle, give a longer one, or smaller gains")
+        return seconds
 
     @property
     def steady_error(self) -> float:

@@ -85,6 +85,18 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     residual: float
     """Larger residual of sliders and, from rest, of the beam: the error of the time integration."""
 
+    @property
+    def imbalance(self) -> float:
+        """Magnitude of the residual over the work of the driving forces. Raises InputError where these do no work."""
+        if not self.drive_work:
+            raise InputError("drive.force does no work in this run: give it an amplitude, or measure slider.energy")
+        return abs(self.residual / self.drive_work)
+
+    @property
+    def contact_imbalance(self) -> float:
+        """Magnitude of the residual over the normal and tangential work of the surface."""
+        return abs(self.residual) / (abs(self.normal_work) + abs(self.tangential_work))
+
 
 class ContactState(Struct, frozen=True, eq=False):
     """Sliders, feet and points at the end of a run."""
@@ -223,6 +235,13 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     def mean_speed(self) -> float:
         """Displacement over duration, m/s. Raises InputError without a slider."""
         return self.displacement / self.duration
+
+    @property
+    def energy_from_rest(self) -> EnergyBalance:
+        """The energy balance. Raises InputError for a run with start = 'steady', whose drive is not computed."""
+        if self.energy is None or self.end.steady:
+            raise InputError("start = 'steady': the energy balance needs a run from rest, give start = 'rest'")
+        return self.energy
 
     @property
     def duration(self) -> float:

@@ -16,8 +16,8 @@ from verify.dynamics.result import END, Motion, Statistics
 from verify.dynamics.slider_run import SliderRun
 from verify.dynamics.validity import margins_of
 from verify.linear.time_basis import TimeBasis
-from verify.options import Start
 from verify.problem.beam import Beam
+from verify.settings import Start
 
 CLOSED_FORM_ROWS = 2000
 """Number of times evaluated at once."""

@@ -12,11 +12,11 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import RigidChain, describe
 from verify.errors import InputError
-from verify.options import Load
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
+from verify.settings import Load
 from verify.validation import check_integer
 
 

@@ -23,18 +23,15 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.options import Theory
 from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
+from verify.settings import DEFAULT, WALLS, Theory
 from verify.validation import check_choice, check_integer, check_number, check_type
 
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
-RULES = {"gregory": "Gregory's weights", "half": "2EI/l", "full": "EI/l", "rigid": "first link fixed",
-         "third-order": "weights 5/12, 13/12", "five-joint": "five-joint weights"}  # fmt: skip
-"""Joints at a clamped end."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 
@@ -136,7 +133,7 @@ class RigidChain:
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
         """(mass, stiffness) over the `unknowns`, without the constraints, (n, n)."""
         about = {"bending": 1, "width": 2, "torsion": 0}[axis]
-        x, masses, inertias = np.array([(one.start + one.centre, one.mass, one.inertia[about]) for one in self.links]).T
+        x, masses, inertias = np.array([(k.start + k.centre, k.mass, k.inertia[about]) for k in self.links]).T
         across, turned = self.rows(axis, range(self.count), x)
         mass = (turned.T * inertias) @ turned
         if axis != "torsion":
@@ -153,9 +150,9 @@ class RigidChain:
 
     def grounded(self, axis: Axis) -> Iterator[tuple[str, Array, float, float]]:
         """(name, row over the unknowns, stiffness, damping) of springs to the ground and of joint N."""
-        for i, one in enumerate(self.springs if axis == "bending" else ()):
-            across, turned = self.rows(axis, [one.link], [one.position])
-            yield f"spring{i}", (turned if one.rotational else across)[0], one.stiffness, one.damping
+        for i, spring in enumerate(self.springs if axis == "bending" else ()):
+            across, turned = self.rows(axis, [spring.link], [spring.position])
+            yield f"spring{i}", (turned if spring.rotational else across)[0], spring.stiffness, spring.damping
         if (far := self.joints[-1].hinge(axis)) and far.stiffness:
             row = self.rows(axis, [self.count - 1], [self.joints[-1].position])[1][0]
             yield f"joint{self.count}_{axis}", row, far.stiffness, far.damping
@@ -168,7 +165,7 @@ class RigidChain:
         """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
-            bodies = [(one.position, one.rotary_inertia) for one in self.beam.mass]
+            bodies = [(body.position, body.rotary_inertia) for body in self.beam.mass]
             return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
@@ -205,18 +202,18 @@ def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: in
 
 
 def describe(
-    beam: Beam, count: int, *, wall: str = "gregory", in_space: bool = False, damping: float = 0.0
+    beam: Beam, count: int, *, wall: str = DEFAULT.wall, in_space: bool = False, damping: float = 0.0
 ) -> RigidChain:
     """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
 
-    `wall`: joints at a clamped end, one of `RULES`; "rigid" fixes the first link to the wall. `damping`:
-    damping ratio of the first mode about every axis. Joint 0 is at the end with the stronger support.
+    `wall`: a rule whose joint 0 is at the wall. `damping`: damping ratio of the first mode about every axis. Joint 0 is
+    at the end with the stronger support.
     """
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
-    check_choice("wall", wall, tuple(RULES))
+    check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
@@ -224,12 +221,17 @@ def describe(
         beam = beam.mirrored()
     turning = [mass.position for mass in beam.mass if mass.rotary_inertia]
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
-    behind = [one for one in beam.spring if one.rotational and one.position in {0.0, beam.length} - {*turning}]
-    series = tuple(PointSpring(position=one.position, rotational=one.rotational) for one in behind)
-    bare, rule = msgspec.structs.replace(beam, mass=(), spring=series), "full" if wall == "rigid" else wall
-    models = {a: SegmentModel(in_plane(bare, a), count, wall=rule) for a in AXES[: 1 + in_space]}  # type: ignore[arg-type]
+    behind = [s for s in beam.spring if s.rotational and s.position in {0.0, beam.length} - {*turning}]
+    series = tuple(PointSpring(position=s.position, rotational=s.rotational) for s in behind)
+    unloaded, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
+    linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
+    models = {a: SegmentModel(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
-    springs = {axis: one.beam.bending_stiffness / unit / one.chain.compliances for axis, one in models.items()}
+    springs = {axis: m.beam.bending_stiffness / unit / m.chain.compliances for axis, m in models.items()}
+    walls = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped" and rule.fault]
+    fixed = [] if rule.weights[0] else walls
+    for stiffness in springs.values() if not fixed else ():
+        stiffness[walls] /= rule.weights[0]
     lengths, sections = parts.lengths * unit, np.zeros((count, 3))
     masses = lengths * parts.masses_per_length * beam.mass_per_length
     bodies = [
@@ -239,7 +241,7 @@ def describe(
     ]
     if in_space:
         twist, spin = np.repeat(shafts(beam)[:, 1:], parts.shares, axis=0).T
-        sections = np.stack([spin, *(one.links.of("rotary_inertia") for one in models.values())], axis=1)
+        sections = np.stack([spin, *(model.links.of("rotary_inertia") for model in models.values())], axis=1)
         springs["torsion"] = _torsion_springs(lengths, twist, spin * lengths, bodies, beam.supports)
     inertias = np.outer(masses * lengths**2 / 12.0, [not in_space, 1.0, 1.0]) + sections * lengths[:, None]
     centres = 0.5 * lengths
@@ -248,24 +250,24 @@ def describe(
         inertias[link] += inertia + share * masses[link] * apart**2 * np.array([0.0, 1.0, 1.0])
         centres[link] += share * apart
         masses[link] += mass
-    fixed = [end for end, s in zip((0, count), beam.supports, strict=True) if s == "clamped" and wall == "rigid"]
-    nodes, values = chain.nodes.tolist(), {axis: one.tolist() for axis, one in springs.items()}
+    nodes, values = chain.nodes.tolist(), {axis: k.tolist() for axis, k in springs.items()}
     hinges = [() if j in fixed else tuple(Hinge(a, k[j]) for a, k in values.items()) for j in range(count + 1)]
-    links = zip(
-        nodes, *(one.tolist() for one in (lengths, masses, centres)), map(tuple, inertias.tolist()), strict=False
-    )
-    ground = tuple(
-        Spring(one.position, link, rotational, share * k)
-        for one in beam.spring
-        for turning in [0.0 if any(one.position == b.position for b in behind) else one.rotational]
-        for link, share in _shares(chain, one.position, turning)
-        for rotational, k in ((False, one.stiffness), (True, turning))
-        if k
-    )
+    sizes = (values.tolist() for values in (lengths, masses, centres))
+    links = tuple(map(Link, nodes, *sizes, map(tuple, inertias.tolist())))
+    ground = tuple(_ground_springs(beam, chain, {spring.position for spring in behind}))
     theory: Theory = "rayleigh" if in_space else "euler-bernoulli"
-    joints = tuple(map(Joint, nodes, hinges))
-    made = RigidChain(beam, wall, joints, tuple(Link(*one) for one in links), ground, 0.0, in_space, mirrored, theory)
-    return _damped(made, damping) if damping else made
+    rigid = RigidChain(beam, wall, tuple(map(Joint, nodes, hinges)), links, ground, 0.0, in_space, mirrored, theory)
+    return _damped(rigid, damping) if damping else rigid
+
+
+def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spring]:
+    """Springs between links and the ground; rotational ones at positions `behind` an end are in its joint."""
+    for spring in beam.spring:
+        turning = 0.0 if spring.position in behind else spring.rotational
+        for link, share in _shares(chain, spring.position, turning):
+            for rotational, k in ((False, spring.stiffness), (True, turning)):
+                if k:
+                    yield Spring(spring.position, link, rotational, share * k)
 
 
 def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: tuple[str, str]) -> Array:
@@ -287,11 +289,11 @@ def _damped(chain: RigidChain, ratio: float) -> RigidChain:
     """The chain with dashpots in proportion to its springs, by which the first mode about each axis has the ratio."""
     times = {axis: ratio / (pi * float(chain.frequencies_hz(axis, 1)[0])) for axis in chain.axes}
 
-    def damped(one: Any, axis: Axis) -> Any:
-        return msgspec.structs.replace(one, damping=times[axis] * one.stiffness)
+    def damped(spring: Any, axis: Axis) -> Any:
+        return msgspec.structs.replace(spring, damping=times[axis] * spring.stiffness)
 
-    joints = tuple(Joint(one.position, tuple(damped(h, h.axis) for h in one.hinges)) for one in chain.joints)
-    return replace(chain, joints=joints, springs=tuple(damped(one, "bending") for one in chain.springs), damping=ratio)
+    joints = tuple(Joint(joint.position, tuple(damped(h, h.axis) for h in joint.hinges)) for joint in chain.joints)
+    return replace(chain, joints=joints, springs=tuple(damped(s, "bending") for s in chain.springs), damping=ratio)
 
 
 def _shares(chain: Any, position: float, turning: float) -> list[tuple[int, float]]:

@@ -14,23 +14,24 @@ import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.description import RULES, Hinge, Joint, Link, RigidChain
+from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
 from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
-from verify.segments.walls import WALLS, wall_factors
+from verify.segments.walls import wall_factors
+from verify.settings import WALLS, wall_label
 
 if TYPE_CHECKING:
     from verify.report.result import Result
 
 HELD = (np.nan, 23 / 12, 7 / 12)
 """Factors w behind a first link fixed to the wall, order 3 (Press et al., Numerical Recipes, open extended formula)."""
-ADAPTED = "first link fixed, adapted joints,"
-SERIES = "fixed link in series with its joint"
+ADAPTED = "first link fixed, adapted joints, at the wall"
+SERIES = "fixed link in series with its joint at the wall"
 """All of a first link that is fixed is in its joint, as with half a link at the wall and EI/l behind: order 2."""
-IRREGULAR = "irregular joints"
+IRREGULAR = "irregular joints at the wall"
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
@@ -95,24 +96,14 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
         joints = tuple(map(Joint, edges.tolist(), hinges))
         return RigidChain(beam, rule, joints, links, theory=theory)
 
-    where = "at the wall" if support == "clamped" else f"{support} end"
-    right = RULES[best], *([] if even else [SERIES])
-    wall = [f"{rule} {where}"] if rule not in right and support == "clamped" else []
+    right = wall_label(best), *([] if even else [SERIES])
+    wall = [rule] if rule not in right and support == "clamped" else []
     joints, links = _faults(line, expected, bodies, spacing, stiffness / reference)
     first = ", ".join(f"{one:.6g}" for one in hinged[:3])
     advice = f"{line.axis}: better than a fixed link is a hinge at the wall, with {first} N m/rad from it on"
-    text = f"{rule} {where}" if support == "clamped" else where
-    return Judged(
-        line,
-        chain(k),
-        chain(springs),
-        text,
-        stiffness,
-        springs,
-        wall + joints + links,
-        links,
-        advice * (held and bool(wall)),
-    )
+    text = rule if support == "clamped" else f"{support} end"
+    faults, advice = wall + joints + links, advice * (held and bool(wall))
+    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, links, advice)
 
 
 def _faults(line: Line, expected: Array, bodies: float, spacing: int, ratio: float) -> tuple[list[str], list[str]]:
@@ -160,21 +151,23 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: float) -> Beam:
 
 
 def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str, int, float]:
-    """(rule at the wall, spacing, EI): the first ones by which all joints have the same EI; `weld`: that of SERIES."""
+    """(rule in words, spacing, EI): the first ones by which all joints have the same EI; `weld`: that of SERIES."""
     held = bool(np.isnan(k[0]))
-    names = [name for name in WALLS if name != "welded"]
-    names = ["rigid", ADAPTED, SERIES] if held else names if support == "clamped" else ["full"]
-    rows: list[Any] = [{ADAPTED: HELD, SERIES: weld}.get(name, 1.0 + np.array(WALLS.get(name, ()))) for name in names]
+    names = ["rigid", ADAPTED, SERIES] if held else ["full"]
+    if support == "clamped" and not held:
+        names = [name for name, rule in WALLS.items() if not rule.first and rule.weights[0]]
+    others: Any = {ADAPTED: HELD, SERIES: weld}
+    rows = [np.array(others[name] if name in others else WALLS[name].weights) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
     spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
     best = int(np.argmin(spreads))
     name, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
-    text = RULES.get(name, name)
+    text = wall_label(name) if name in WALLS else name
     if spreads[best] > ALIKE:
         inner = (k * bases[0])[1:]
         spacing, stiffness, text = 0, float(np.median(inner)), IRREGULAR
         if inner.std() < ALIKE * stiffness:
-            text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l"
+            text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l at the wall"
     return text, spacing, stiffness
 
 

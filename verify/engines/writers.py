@@ -12,6 +12,7 @@ from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
 from verify.problem.cross_section import merged, set_fields
 from verify.report.result import Column, Table, to_json
+from verify.settings import WALLS
 
 DIRECTIONS: dict[Axis, str] = {"bending": "0 -1 0", "width": "0 0 1", "torsion": "1 0 0"}
 SLIDES: dict[Axis, str] = {"bending": "0 0 1", "width": "0 1 0"}
@@ -234,8 +235,9 @@ def write(chain: RigidChain, path: Path) -> str:
     kind = next((end for end in _WRITERS if path.name.lower().endswith(end)), None)
     if kind is None:
         raise InputError(f"to = {shown(str(path))}: its end is no file type, give {', '.join(_WRITERS)}")
-    if chain.wall == "rigid":
-        raise InputError("wall = 'rigid': a first link fixed to the wall is for comparison, give another wall")
+    if WALLS[chain.wall].fault:
+        text = f"{WALLS[chain.wall].meaning} is a fault that chains are compared with"
+        raise InputError(f"wall = {chain.wall!r}: {text}, give another wall")
     if kind in (".sdf", ".urdf") and chain.closed:
         text = "has no support of the far end and no spring to the ground, write .xml, _exudyn.py or _pinocchio.py"
         raise InputError(f"to = {shown(str(path))}: {kind[1:].upper()} {text}")

@@ -12,10 +12,11 @@ import msgspec
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
+from verify.settings import WALLS
 
 _LAW_TO = 2.5
 """mu up to which errors follow `expected_error` within a third of its terms from 20 parts on (measured)."""
-_GREGORY = (-5.0 / 8.0, 1.0 / 6.0, -1.0 / 24.0)
+_GREGORY = WALLS["gregory"].corrections
 
 
 def sine_fits(supports: tuple[str, str]) -> bool:

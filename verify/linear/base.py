@@ -13,10 +13,10 @@ from verify.linear.field import HarmonicField, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Kind, Loads, Numbers, loads_on
 from verify.linear.time_basis import TimeBasis
-from verify.options import THEORIES
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.device import Device
-from verify.validation import as_tuple, check_choice, check_integer, check_type
+from verify.settings import DEFAULT, check_setting
+from verify.validation import as_tuple, check_integer, check_type
 
 Devices: TypeAlias = Device | Sequence[Device]
 """One device, or several."""
@@ -51,10 +51,8 @@ class BeamModel(ABC):
     """Package that the model needs besides numpy and scipy."""
     lines: ClassVar[tuple[str, ...]] = ("spline",)
     """Contact lines on which a slider can run."""
-    modal_settings: ClassVar[tuple[str, ...]] = ()
-    """Settings of `analysis.variants` on which the frequencies depend."""
     beam: Beam
-    theory: str = "euler-bernoulli"
+    theory: str = DEFAULT.theory
 
     def __init_subclass__(cls) -> None:
         """The default title is the name; methods that compute have one thread of BLAS."""
@@ -62,6 +60,25 @@ class BeamModel(ABC):
         for verb in VERBS:
             if verb in vars(cls):
                 setattr(cls, verb, one_blas_thread()(vars(cls)[verb]))
+
+    def __post_init__(self) -> None:
+        """Raise InputError for an unknown setting, and for missing section properties of the theory."""
+        check_type("beam", self.beam, Beam)
+        for name in self.settings():
+            check_setting(name, getattr(self, name))
+        if self.theory != "euler-bernoulli" and self.beam.tension:
+            raise InputError(
+                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
+                "leave the axial force out or choose euler-bernoulli"
+            )
+        for i, piece in enumerate(self.beam.pieces):
+            for figure in _NEEDS.get(self.theory, ()):
+                if getattr(piece, figure) is None:
+                    where = f"beam.section[{i}]" if self.beam.section else "beam"
+                    raise InputError(
+                        f"{where}.{figure} is missing: theory = {self.theory!r} needs it, give it, or a shape with its "
+                        "sizes, youngs_modulus and density"
+                    )
 
     @classmethod
     def build(cls, beam: Beam, count: int | None = None, **settings: Any) -> "BeamModel":
@@ -86,7 +103,7 @@ class BeamModel(ABC):
     @cache
     def settings(cls) -> tuple[str, ...]:
         """Names of the settings: the fields after the beam and the number of parts."""
-        return tuple(one.name for one in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
+        return tuple(field.name for field in fields(cls))[1 + cls.sized :]  # type: ignore[arg-type]
 
     @classmethod
     def can(cls, verb: str) -> bool:
@@ -162,24 +179,6 @@ class BeamModel(ABC):
                 f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
                 "modes, raise count"
             )
-
-    def check_theory(self) -> None:
-        """Raise InputError for an unknown theory, and for missing section properties of the theory."""
-        check_type("beam", self.beam, Beam)
-        check_choice("theory", self.theory, THEORIES)
-        if self.theory != "euler-bernoulli" and self.beam.tension:
-            raise InputError(
-                f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
-                "leave the axial force out or choose euler-bernoulli"
-            )
-        for i, piece in enumerate(self.beam.pieces):
-            for figure in _NEEDS.get(self.theory, ()):
-                if getattr(piece, figure) is None:
-                    where = f"beam.section[{i}]" if self.beam.section else "beam"
-                    raise InputError(
-                        f"{where}.{figure} is missing: theory = {self.theory!r} needs it, give it, or a shape with its "
-                        "sizes, youngs_modulus and density"
-                    )
 
     def check_stationed(
         self,

@@ -6,6 +6,8 @@ from typing import Any
 import msgspec
 
 from verify.arrays import Array
+from verify.errors import InputError
+from verify.linear.numerics import zeros
 from verify.linear.positions import Numbers, positions_on, reshape_like
 
 
@@ -68,6 +70,16 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def deflection(self, x: Numbers) -> Array:
         """Mass-normalised deflection at x (m), (n_modes, *shape of x), 1/sqrt(kg). Raises InputError off the beam."""
         return reshape_like(self.shapes(positions_on("x", x, self.length).ravel(), 0), x)
+
+    def node_positions(self, mode: int) -> Array:
+        """Positions of the nodes of a mode, from 1, between the ends of the beam, m, ascending, (n_zeros,)."""
+        return zeros(lambda x: self.deflection(x)[mode - 1], self.length, mode)
+
+    def at_nodes(self, reading: str | None = None) -> Array:
+        """Deflection at `nodes` by a reading (default: the first), (n_modes, n_nodes). Raises InputError."""
+        if reading is not None and reading not in self.readings:
+            raise InputError(f"reading = {reading!r} is not a reading of {self.model}: give {', '.join(self.readings)}")
+        return self.readings[reading or next(iter(self.readings))]()
 
     def slope(self, x: Numbers) -> Array:
         """d/dx of the deflection, of the same shape, 1/(m sqrt(kg)). Raises InputError off the beam."""

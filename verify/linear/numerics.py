@@ -60,3 +60,21 @@ def extremes(function: Callable[[Array], Array], x: Array) -> tuple[float, float
         samples.append(function(0.5 * (low + high)))
     both = np.concatenate(samples)
     return float(both.min()), float(both.max())
+
+
+def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
+    """Zeros of a shape between the ends of the beam, (n_zeros,), m, ascending.
+
+    `shape` takes (n,) positions. Sampled 40 times per mode number, then Brent's method.
+    """
+    from scipy.optimize import brentq
+
+    margin = 1e-4 / mode  # zeros at the ends are supports, not nodes
+    x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
+    positive = shape(x) >= 0
+    changes = np.flatnonzero(positive[:-1] != positive[1:])
+
+    def at(position: float) -> float:
+        return float(shape(np.array([position]))[0])
+
+    return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in changes])

@@ -55,8 +55,3 @@ def bounding() -> "tuple[type[BeamModel], type[BeamModel]]":
     """The model below the exact frequencies, and the one above."""
     sides = {MODELS[name].bounds: MODELS[name] for name in MODELS.built_in}
     return sides["below"], sides["above"]
-
-
-def check_count(name: str, count: int | None, field: str = "model") -> None:
-    """Raise InputError for a discrete model without a number of parts, or the exact beam with one."""
-    MODELS.named(name, field).check_count(count)

@@ -15,9 +15,13 @@ from msgspec.structs import replace
 from verify.arrays import Array
 from verify.dynamics.result import Motion
 from verify.errors import InputError
+from verify.estimate import Estimate
+from verify.formatting import with_error, with_unit
 from verify.motor.steady_state import (
     BATCHES,
+    NO_POWER,
     PERIODS,
+    UNCONVERGED,
     MotorCase,
     SteadyState,
     balanced,
@@ -39,12 +43,9 @@ OVERSHOOT = 0.05
 """Excess of the mean speed over the final one, relative to its change, from which the approach has no time constant:
 `STEADY`. The mean force at one place depends on the speed alone, dv/dt = F(v)/m, and such an approach is monotone."""
 Missing = Literal["start", "overshoot", "resolution"]
-REASONS = {
-    "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
-    "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
-    "fractions": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
-    "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
-    "efficiency": "no power flows from the surface to the load, choose a speed between zero and the no-load speed",
+REASONS: dict[str, str] = {
+    **UNCONVERGED,
+    "efficiency": NO_POWER,
     "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
     "free speed": "the free run has not reached a steady state, raise periods or slider.preload, or lower the "
     "standing-wave ratio along which the slider moves",
@@ -103,6 +104,9 @@ class TimeConstant(Struct, frozen=True, kw_only=True):
 class Transient(Struct, frozen=True, eq=False, kw_only=True):
     """A free run from an initial speed."""
 
+    case: MotorCase
+    periods: int
+    """Number of drive periods."""
     run: Motion
     """The motion, in long runs without the first 32 periods."""
     start_speed: float
@@ -121,6 +125,38 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     converged: bool
     """Whether the run reached its end with `error` up to 5 % of `speed` (or both up to 0.1 % of the crest speed), mean
     acceleration up to 1 % of mu N / mass and mean normal force within 10 % of the load."""
+
+    @property
+    def final_speed(self) -> Estimate:
+        """`speed` with its error, m/s. Raises InputError where the run leaves the beam or has no steady state."""
+        self._check_finished()
+        if not self.converged:
+            last = with_error(1e3 * self.speed, 1e3 * self.error)
+            raise InputError(f"periods = {self.periods!r}: {REASONS['free speed']} (last quarter: {last} mm/s)")
+        return Estimate(self.speed, self.error)
+
+    @property
+    def start_time(self) -> Estimate:
+        """Time constant of the approach to the final speed with its error, s. Raises InputError where it has none."""
+        self._check_finished()
+        start = self.time_constant()
+        if start.missing == "overshoot":
+            peak, reached = with_unit(start.peak, "m/s"), with_unit(start.peak_time, "s")
+            course = (
+                f"reaches {peak} (1 - 1/e of the change at {reached}), then returns to {with_unit(self.speed, 'm/s')}"
+            )
+            raise InputError(f"periods = {self.periods!r}: {REASONS['overshoot']} (it {course})")
+        _ = self.final_speed  # which raises InputError without a steady state
+        if start.missing == "resolution":
+            half, mass = with_unit(float(self.times[0]), "s"), self.case.slider.mass
+            raise InputError(f"slider.mass = {mass!r} kg: {REASONS['resolution']} ({half})")
+        if start.missing:
+            raise InputError(f"periods = {self.periods!r}: {REASONS['start']}")
+        return Estimate(start.time, start.error)
+
+    def _check_finished(self) -> None:
+        if not self.run.statistics.finished:
+            raise InputError(f"periods = {self.periods!r}: {REASONS['left']}")
 
     def time_constant(self, target: float | None = None) -> TimeConstant:
         """Time to 1 - 1/e of the change to `target` (m/s, default: the final speed).
@@ -197,6 +233,8 @@ def transient(case: MotorCase, periods: int, before: Transient | None = None) ->
     steady &= 2.0 * slider.mass * drift <= 0.01 * slider.mu * load
     carries = not balanced(slider) or abs(run.normal_force[-last:].mean() - load) <= 0.1 * load
     return Transient(
+        case=case,
+        periods=periods,
         run=run,
         start_speed=before.speed if before else slider.speed,
         times=times,

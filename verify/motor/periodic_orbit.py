@@ -28,7 +28,12 @@ class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
     residual: float
     """Largest change of a coordinate over the period, relative to its scale."""
     multipliers: ComplexArray
-    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers); stable below 1."""
+    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)."""
+
+    @property
+    def largest_multiplier(self) -> float:
+        """Largest magnitude of the multipliers; stable below 1."""
+        return float(max(abs(self.multipliers)))
 
 
 def periodic_orbit(

@@ -26,10 +26,11 @@ from verify.dynamics.request import FEET_STEPS_PER_PERIOD
 from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
+from verify.estimate import Estimate
 from verify.linear.surface import section_at
-from verify.options import Start
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.slider import Slider
+from verify.settings import Start
 
 Figure = Literal["force", "normal force", "fractions", "powers"]
 BATCHES = 16
@@ -46,6 +47,20 @@ TOLERANCES: "dict[Figure, tuple[float, float]]" = {
     "powers": (1e-2, 1e-2),
 }
 """Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
+UNCONVERGED: dict[str, str] = {
+    "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
+    "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
+    "fractions": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
+    "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
+}
+NO_POWER = "no power flows from the surface to the load, choose a speed between zero and the no-load speed"
+GROUPS: "dict[str, Figure]" = {
+    "normal_force": "normal force",
+    "contact_fraction": "fractions",
+    "stick_fraction": "fractions",
+    "friction_power": "powers",
+}
+"""Criterion of convergence of a mean; that of all others is the force."""
 SLIPS = 8.0
 """Slider displacement in the first window over mu N / (stiffness of the softest point), at which all points slip."""
 
@@ -149,6 +164,19 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
         """Power over surface power; None if one is negative or the surface power is zero."""
         supplied = self.means.surface_power
         return self.power / supplied if supplied > 0.0 and self.power >= 0.0 else None
+
+    def estimate(self, figure: str) -> Estimate:
+        """One of `Means`, the power, or the efficiency (whose error is 0), SI. Raises InputError if not converged."""
+        criteria: tuple[Figure, ...] = ("force", "powers") if figure == "efficiency" else (GROUPS.get(figure, "force"),)
+        if missing := next((name for name in criteria if not self.converged(name)), None):
+            raise InputError(f"periods = {self.periods!r}: {UNCONVERGED[missing]}")
+        if figure == "power":
+            return Estimate(self.power, abs(self.speed) * self.errors.force)
+        if figure != "efficiency":
+            return Estimate(getattr(self.means, figure), getattr(self.errors, figure))
+        if self.efficiency is None:
+            raise InputError(f"speed = {self.speed!r} m/s: {NO_POWER}")
+        return Estimate(self.efficiency)
 
     def converged(self, *figures: Figure) -> bool:
         """Whether `figures` (default: all) have converged."""

@@ -8,10 +8,9 @@ import msgspec
 from msgspec.structs import asdict, replace
 
 from verify.errors import InputError, written
-from verify.options import Support
 from verify.problem.cross_section import CrossSection, Piece, Section, merged, piece_of, set_fields
 from verify.problem.point_attachments import PointMass, PointSpring
-from verify.problem.supports import FIXED, check_free
+from verify.problem.supports import FIXED, Support, check_free
 from verify.validation import Relative, check_number, check_position, unit, validate
 
 SHORTEST_SECTION = 1e-6  # shortest section relative to the beam's length; a shorter one may be a rounding residue

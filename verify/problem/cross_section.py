@@ -7,7 +7,7 @@ import msgspec
 from msgspec.structs import asdict
 
 from verify.errors import InputError
-from verify.options import Shape
+from verify.settings import Shape
 from verify.validation import check_number, unit, validate
 
 SIZES = {"rectangle": ("width", "thickness"), "round": ("diameter",), "tube": ("diameter", "wall_thickness")}

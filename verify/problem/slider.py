@@ -6,8 +6,8 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 from verify.problem.beam import Beam
+from verify.settings import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 from verify.validation import check_number, check_position, unit, validate
 
 GRAVITY = 9.81

@@ -1,9 +1,11 @@
 """The four supports of a beam's end by the motions that they prevent: deflection w, rotation w'."""
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from verify.errors import InputError
+
+Support = Literal["pinned", "clamped", "free", "guided"]
 
 
 class Fixity(NamedTuple):
@@ -13,12 +15,14 @@ class Fixity(NamedTuple):
     rotation: bool
 
 
-FIXED = {
+FIXED: dict[str, Fixity] = {
     "pinned": Fixity(deflection=True, rotation=False),
     "clamped": Fixity(deflection=True, rotation=True),
     "guided": Fixity(deflection=False, rotation=True),
     "free": Fixity(deflection=False, rotation=False),
 }
+"""All supports, as an end has two motions: an elastic or a loaded end is one of them with a spring, mass or device."""
+SUPPORTS = tuple(FIXED)
 
 
 def check_free(

@@ -6,7 +6,7 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify import options
+from verify import settings
 from verify.errors import InputError
 from verify.problem.beam import PointForce
 from verify.quantities.base import Place, Scene, quantity
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 Links = Annotated[int, Meta(ge=1, description="N, number of links")]
 Seconds = Annotated[float, unit("s"), Meta(gt=0, description="duration from rest, s")]
 Inertia = Annotated[
-    options.Inertia, Meta(description="axial inertia: rigid links with or without it, or links that stretch by EA / l")
+    settings.Inertia, Meta(description="axial inertia: rigid links with or without it, or links that stretch by EA / l")
 ]
 Reading = Annotated[
     Literal["end", "rms", "beam"],
     Meta(description="end: at mid-span; rms: until then; beam: rms over joints, start phases and both directions"),
 ]
-ChainLoad = Annotated[options.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")]
+ChainLoad = Annotated[settings.Load, Meta(description="reciprocal: forces on four joints; lever: on their link's two")]
 
 
 @quantity("chain.contact_line_error", unit="1", reads=("beam",))
@@ -94,7 +94,7 @@ def transient_deflection(
     x: Place,
     load: ChainLoad = "reciprocal",
     reading: Annotated[
-        options.ChainReading, Meta(description="corrected: spline as on the linear chain; links: straight links")
+        settings.ChainReading, Meta(description="corrected: spline as on the linear chain; links: straight links")
     ] = "corrected",
 ) -> float:
     """Deflection of the nonlinear chain at x after `time` from rest under the scene's forces."""
@@ -124,7 +124,7 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
     """Time integration of the scene's slider, with or without feet, on the nonlinear chain from rest."""
 
     segments: Links
-    links: Annotated[options.Links, Meta(description="stretching: axial stiffness EA / l")] = "rigid"
+    links: Annotated[settings.Links, Meta(description="stretching: axial stiffness EA / l")] = "rigid"
     load: ChainLoad = "reciprocal"
     joint_dashpot: Annotated[float, Meta(ge=0, description="dashpot of every joint with a spring, N m s")] = 0.0
     force: ForceAmplitude | None = None

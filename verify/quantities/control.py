@@ -1,140 +1,72 @@
 """The controlled motor of a scene: settings of the loop, and its overshoot."""
 
-from math import pi
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from functools import partial
+from typing import Any
 
-import msgspec
-from msgspec import Meta
-from msgspec.structs import replace
-
+from verify.analysis.solution_cache import SolutionCache
+from verify.control import plants
+from verify.control.design import Loop, LoopOptions
+from verify.control.loop import Response, closed_loop
 from verify.errors import InputError
+from verify.motor.steady_state import MotorCase
 from verify.quantities import options as opt
-from verify.quantities.base import Scene, quantity
+from verify.quantities.base import Scene, figures
 from verify.quantities.motor import cached
-from verify.validation import unit
-
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.control.controller import Controller
-    from verify.control.loop import Response
-PLANTS = "plant: linearised at the target, averaged over a drive period, or beam and slider in full"
-OUTPUT = "command: factor of all forces, or phase of the last one, degrees"
 
 
-class Loop(NamedTuple):
-    """A controller, and its motor as every plant: linear, averaged, full."""
+class ControlOptions(LoopOptions, frozen=True, kw_only=True):
+    """Step of the target, controller, plant, sampling and model of the beam."""
 
-    controller: "Controller"
-    plants: dict[str, Any]
-    command: float  # steady, before the step
-    times: tuple[float, float]  # time constants of motor and envelope, s
-    map_error: float  # of the interpolated force at the target, as a fraction of the speed
-
-
-class ControlOptions(msgspec.Struct, frozen=True, kw_only=True):
-    """Step of the target, controller, plant and sampling."""
-
-    target: Annotated[float, Meta(description="speed, m/s, or position from the start, m")]
-    of: Annotated[Literal["speed", "position"], Meta(description="controlled variable")] = "speed"
-    speed: Annotated[float, unit("m/s"), Meta(description="steady speed before the step, m/s")] = 0.0
-    plant: Annotated[Literal["linear", "averaged", "full"], Meta(description=PLANTS)] = "averaged"
-    output: Annotated[Literal["amplitude", "phase"], Meta(description=OUTPUT)] = "amplitude"
-    lower: Annotated[float, Meta(description="least command, above 0 for an amplitude")] = 0.1
-    upper: Annotated[float, Meta(description="largest command")] = 1.5
-    gain: Annotated[float, Meta(description="K_p; default: magnitude optimum")] | None = None
-    integral_gain: Annotated[float, Meta(description="K_i, 1/s; default: magnitude optimum")] | None = None
-    feed_forward: Annotated[bool, Meta(description="whether the steady command of the target is added")] = False
-    sample_time: Annotated[float, unit("s", gt=0), Meta(description="s; default: 8 drive periods")] | None = None
-    delay: Annotated[int, Meta(ge=0, description="computational delay, ticks")] = 0
-    duration: Annotated[float, unit("s", gt=0), Meta(description="s; default: 30 ticks and envelopes")] | None = None
-    speeds: Annotated[int, Meta(ge=4, le=101, description="points of every force-speed curve")] = 13
-    curves: Annotated[int, Meta(ge=2, le=51, description="number of force-speed curves over the command")] = 7
     model: opt.TimeModel = "segment"
     count: opt.Size | None = None
     modal_damping: opt.ModalDamping | None = None
 
-    def loop(self, scene: Scene, cache: "SolutionCache") -> Loop:
+    def loop(self, scene: Scene, cache: SolutionCache) -> Loop:
         """The loop on a scene; gains by default of the magnitude optimum at the target. Raises InputError."""
-        from verify.control import plants
-        from verify.control.controller import Controller, magnitude_optimum
-        from verify.motor.steady_state import MotorCase
-
-        if self.of == "position" and self.output == "amplitude":
-            raise InputError("output = 'amplitude': a position loop reverses the motor, give output = 'phase'")
-        if (slider := scene.slider) is None:
+        if scene.slider is None:
             raise InputError(
                 "slider is missing: a controlled motor has one, add [slider] with mass and mu to the scene"
             )
-        if self.target == (self.speed if self.of == "speed" else 0.0):
-            raise InputError(f"target = {self.target!r}: the motor starts there, give another")
         opt.check_count(self.model, self.count)
         opt.check_forces(scene, "a controlled motor")
-        damping = 0.5 * scene.beam.loss_factor if self.modal_damping is None else self.modal_damping
-        if not damping:
-            raise InputError("beam.loss_factor = 0: a controlled motor has a damped beam, give it or modal_damping")
-        hertz, forces = opt.drive_frequency(scene), opt.DriveOptions().forces(scene)
         case = MotorCase(
-            beam=scene.beam, forces=forces, frequency_hz=hertz, slider=slider, model=self.model, count=self.count,
+            beam=scene.beam,
+            forces=opt.DriveOptions().forces(scene),
+            frequency_hz=opt.drive_frequency(scene),
+            slider=scene.slider,
+            model=self.model,
+            count=self.count,
             modal_damping=self.modal_damping,
-        )  # fmt: skip
-        point = replace(case, slider=replace(slider, coupling="one-way")) if slider.contact is None else case
-        limits = self.lower, self.upper
-        force = cached(cache, plants.force_map, point, limits, self.output, (self.curves, self.speeds))
-        envelope = 1.0 / (damping * 2.0 * pi * hertz)
-        averaged = plants.AveragedMotor(mass=slider.mass, force=force, time_constant=envelope)
-        full = plants.FullMotor(case=replace(case, start="rest"), output=self.output, settling=8.0 * envelope)
+        )
+        return self.loop_on(case, partial(cached, cache, plants.force_map))
 
-        def command_at(speed: float) -> float:
-            return averaged.command_at(speed, *limits)
-
-        speed = self.target if self.of == "speed" else 0.0
-        if not self.lower < (at := command_at(speed)) < self.upper:
-            raise InputError(
-                f"target = {self.target!r}: no command from {self.lower!r} to {self.upper!r} holds this speed, give "
-                "one of the sign of wave.crest_speed and below its size, or wider limits"
-            )
-        linear, plant_gain, motor = averaged.linearised(speed, at)
-        h = self.sample_time or 8.0 / hertz
-        if self.plant == "full" and abs(h * hertz - max(round(h * hertz), 1)) > 1e-6:
-            raise InputError(f"sample_time = {h!r}: give whole drive periods, over which the full plant has its speed")
-        slow, fast = max(motor, envelope), min(motor, envelope) + (self.delay + 0.5) * h
-        gain, integral_gain = magnitude_optimum(plant_gain, slow, fast)
-        gain = gain if self.gain is None else self.gain
-        integral_gain = integral_gain if self.integral_gain is None else self.integral_gain
-        controller = Controller(
-            gain=gain, integral_gain=integral_gain, sample_time=h, lower=self.lower, upper=self.upper, delay=self.delay,
-            position_gain=0.25 / fast if self.of == "position" else 0.0,  # damping ratio 1/sqrt(2) about the speed loop
-            feed_forward=command_at if self.feed_forward else lambda speed: 0.0,
-        )  # fmt: skip
-        motors = {"linear": linear, "averaged": averaged, "full": full}
-        direct = plants.mean_force(plants.commanded(point, at, self.output), speed)
-        error = abs(direct * motor / (slider.mass * (speed or plant_gain * self.upper)))
-        return Loop(controller, motors, command_at(self.speed), (motor, envelope), error)
-
-    def response(self, scene: Scene, cache: "SolutionCache", plant: str = "") -> "Response":
+    def response(self, scene: Scene, cache: SolutionCache, plant: str = "") -> Response:
         """The response of a plant, by default `plant`, computed once. Raises InputError."""
-        from verify.control.loop import closed_loop
-
-        own = {name: getattr(self, name) for name in ControlOptions.__struct_fields__} | {"plant": plant or self.plant}
-        key: Any = ("control", *own.values(), scene.slider, scene.drive)
+        plant = plant or self.plant
+        options = {name: getattr(self, name) for name in ControlOptions.__struct_fields__} | {"plant": plant}
+        key: Any = ("control", *options.values(), scene.slider, scene.drive)
         if key not in cache.motors:
             loop = self.loop(scene, cache)
             duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
-            motor, start = loop.plants[own["plant"]], (self.speed, loop.command)
-            cache.motors[key] = closed_loop(loop.controller, motor, self.target, duration, start)
+            start = self.speed, loop.command
+            cache.motors[key] = closed_loop(loop.controller, loop.plants[plant], self.target, duration, start)
         return cache.motors[key]  # type: ignore[no-any-return]
 
 
-@quantity("control.overshoot", unit="1")
-def overshoot(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
-    """Overshoot of the controlled slider's speed or position over the step of its target; negative if not reached."""
-    return control.response(scene, cache).overshoot
+def response(scene: Scene, cache: SolutionCache, control: ControlOptions) -> Response:
+    """The response of a scene's controlled motor. Raises InputError."""
+    return control.response(scene, cache)
 
 
-@quantity("control.settling_time", unit="s")
-def settling_time(scene: Scene, cache: "SolutionCache", control: ControlOptions) -> float:
-    """Time after a step of the target from which the controlled slider stays within 2 % of the step."""
-    seconds = control.response(scene, cache).settling_time
-    if seconds is None:
-        raise InputError("duration: the response does not settle, give a longer one, or smaller gains")
-    return seconds
+figure = figures("control", response)
+figure(
+    "overshoot",
+    "1",
+    "Overshoot of the controlled slider's speed or position over the step of its target; negative if not reached.",
+)
+figure(
+    "settling_time",
+    "s",
+    "Time after a step of the target from which the controlled slider stays within 2 % of the step.",
+    "settled_after",
+)

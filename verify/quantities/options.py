@@ -7,10 +7,9 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify import options
+from verify import settings
 from verify.analysis.solution_cache import Settings
 from verify.errors import InputError, near_name
-from verify.linear import registry
 from verify.linear.registry import MEAN, MODELS
 from verify.problem.beam import PointForce, check_frequency
 from verify.quantities.base import MODEL_NAME, Place, Scene
@@ -53,15 +52,10 @@ DiscreteField = Annotated[str, model_name("discrete model of the beam", "harmoni
 TimeModel = Annotated[str, model_name("model of the beam", "time_basis")]
 Frequency = Annotated[float, unit("Hz"), Meta(gt=0, description="drive frequency, Hz; default: the scene's")]
 ModalDamping = Annotated[Relative, Meta(ge=0, lt=1, description="damping ratio of every mode")]
-Theory = Annotated[options.Theory, Meta(description="beam theory")]
-TimeTheory = Annotated[options.Theory, Meta(description="beam theory; in time Euler-Bernoulli alone")]
-Wall = Annotated[options.Wall, Meta(description="joints at a clamped end; half: k = 2EI/l")]
-Joints = Annotated[options.Joints, Meta(description="joint stiffness, Eq. (1)")]
-Attachment = Annotated[options.Attachment, Meta(description="distribution of point masses and springs on segments")]
+Wall = settings.Wall
+TimeTheory = Annotated[settings.Theory, Meta(description="beam theory; in time Euler-Bernoulli alone")]
 SoftStart = Annotated[float, Meta(ge=0, description="growth of the forces, in drive periods; default: the scene's")]
-ForceAmplitude = Annotated[
-    float, unit("N"), Meta(ge=0, description="amplitude of every force, N; default: the scene's")
-]
+ForceAmplitude = Annotated[float, unit("N"), Meta(ge=0, description="amplitude of all forces, N; default: the scene's")]
 Mu = Annotated[float, Meta(gt=0, description="coefficient of friction")]
 Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
 Mass = Annotated[float, unit("kg"), Meta(gt=0, description="mass, kg")]
@@ -70,7 +64,7 @@ Mass = Annotated[float, unit("kg"), Meta(gt=0, description="mass, kg")]
 def check_count(model: str, count: int | None) -> None:
     """Raise InputError for a discrete model without `count`, or the exact beam with `count`."""
     if model != MEAN:
-        registry.check_count(model, count)
+        MODELS.named(model).check_count(count)
     elif count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 
@@ -84,14 +78,8 @@ def check_settings(model: str, chosen: Settings) -> Settings:
     return chosen
 
 
-class ModelOptions(msgspec.Struct, frozen=True, kw_only=True):
+class ModelOptions(settings.ModelSettings, frozen=True, kw_only=True):
     """Settings of the discrete models."""
-
-    wall: Wall = "gregory"
-    joints: Joints = "series"
-    grading: Annotated[float, Meta(gt=0, description="length of a section's last part over its first")] = 1.0
-    theory: Theory = "euler-bernoulli"
-    attachment: Attachment = "reciprocal"
 
     @property
     def settings(self) -> Settings:
@@ -165,7 +153,7 @@ def check_forces(scene: Scene, subject: str) -> None:
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {subject} takes imposed forces, give kind = 'force'")
 
 
-def check_theory(subject: str, theory: options.Theory) -> None:
+def check_theory(subject: str, theory: settings.Theory) -> None:
     """Raise InputError for a theory that `subject` does not have."""
     if theory != "euler-bernoulli":
         both = "leave it out and compare wave.standing_wave_ratio by both theories"

@@ -6,21 +6,26 @@ import msgspec
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify import options
+from verify import settings
+from verify.analysis.comparison import asymptotic_order, relative_error
+from verify.analysis.solution_cache import SolutionCache
+from verify.dynamics.arguments import Excitation, Keep, Step
 from verify.errors import InputError
+from verify.linear.positions import positions_on
 from verify.linear.registry import MODELS
 from verify.problem.slider import Slider, changed
 from verify.quantities import options as opt
-from verify.quantities.base import Place, Scene, quantity
+from verify.quantities.base import Place, Scene, figures, quantity
+from verify.travelling_wave import measure_series
 from verify.validation import check_sizes, unit
+from verify.waves.window import check_span, check_waves
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.dynamics.arguments import Step
-    from verify.dynamics.result import EnergyBalance, Motion
+    from verify.dynamics.result import Motion
 
 Time = Annotated[float, unit("s"), Meta(gt=0, description="duration, s; default: the scene's motion.duration")]
 Window = Annotated[tuple[float, float], Meta(description="start and end, m")]
+Kinematics = Annotated[settings.Kinematics, Meta(description="kinematics of the slider")]
 SAMPLES_PER_PERIOD, POINTS = 32, 40
 """Samples per period, and positions, at which the wave of a motion is measured."""
 SOFT_START_PERIODS = 2.0
@@ -35,7 +40,7 @@ class TimeOptions(opt.DriveOptions, frozen=True, kw_only=True):
     count: opt.Size | None = None
     theory: opt.TimeTheory = "euler-bernoulli"
     time: Time | None = None
-    start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
+    start: Annotated[settings.Start, Meta(description="default: the scene's motion.start")] | None = None
     soft_start_periods: opt.SoftStart | None = None
     modal_damping: opt.ModalDamping | None = None
     modes: Annotated[int, Meta(ge=1, description="number, for model = analytic from rest; default: 400")] | None = None
@@ -48,10 +53,10 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
     mu: opt.Mu | None = None
     slope: opt.Slope | None = None
     mass: opt.Mass | None = None
-    law: Annotated[options.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
-    kinematics: Annotated[options.Kinematics, Meta(description="kinematics of the slider")] | None = None
-    coupling: Annotated[options.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
-    normal: Annotated[options.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
+    law: Annotated[settings.Law, Meta(description="friction law; tanh: Eq. (3), coulomb: with stiction")] | None = None
+    kinematics: Kinematics | None = None
+    coupling: Annotated[settings.CouplingChoice, Meta(description="coupling of slider and beam")] | None = None
+    normal: Annotated[settings.NormalChoice, Meta(description="bilateral: with weight and inertia")] | None = None
     slider_position: Annotated[Place, Meta(description="initial position, m")] | None = None
     slider_speed: Annotated[float, Meta(description="initial speed, m/s")] | None = None
     step: Annotated[float, Meta(gt=0, description="time step of the slider, s; default: automatic")] | None = None
@@ -63,18 +68,14 @@ class SliderOptions(msgspec.Struct, frozen=True, kw_only=True):
         values = {name.removeprefix("slider_"): getattr(self, name) for name in self.__struct_fields__}
         return changed(scene.slider, **{k: v for k, v in values.items() if v is not None and k != "step"})
 
-    def time_step(self, scene: Scene) -> "Step":
+    def time_step(self, scene: Scene) -> Step:
         """The time step, by default by the scene's number in a period."""
-        from verify.dynamics.arguments import Step
-
         steps = scene.motion.steps_per_period if scene.motion and self.step is None else None
         return Step(seconds=self.step, per_period=steps)
 
 
 def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
     """Keyword arguments of `simulate` for the driven beam of a scene. Raises InputError."""
-    from verify.dynamics.arguments import Excitation
-
     motion, soft = scene.motion, by.soft_start_periods
     time = by.time if motion is None else by.time or motion.duration
     if time is None:
@@ -89,16 +90,15 @@ def motion_arguments(scene: Scene, by: TimeOptions) -> dict[str, Any]:
         soft = (SOFT_START_PERIODS if start == "rest" else 0.0) if soft is None else soft
     damping = by.modal_damping if by.modal_damping is not None or motion is None else motion.modal_damping
     forces, hertz = by.forces(scene, by.force), opt.drive_frequency(scene, by.frequency_hz)
-    own = {"model": by.model, "count": by.count, "modes": by.modes, "start": start}
-    there = scene.in_time(forces, hertz)
-    excitation = Excitation(there.loads, hertz, soft, circuits=there.circuits)
-    driven = {"beam": there.beam, "excitation": excitation, "duration": time}
-    return {**driven, **own, "modal_damping": damping}
+    loaded = scene.in_time(forces, hertz)
+    excitation = Excitation(loaded.loads, hertz, soft, circuits=loaded.circuits)
+    model = {"model": by.model, "count": by.count, "modes": by.modes, "start": start, "modal_damping": damping}
+    return {"beam": loaded.beam, "excitation": excitation, "duration": time, **model}
 
 
-def _simulated(cache: "SolutionCache", arguments: dict[str, Any]) -> "Motion":
+def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> "Motion":
     """A simulation, computed once for equal arguments."""
-    from verify.dynamics.simulate import simulate
+    from verify.dynamics.simulate import simulate  # which `verify measure` of a mode does not load
 
     key = tuple(arguments.items())
     if key not in cache.motions:
@@ -106,26 +106,18 @@ def _simulated(cache: "SolutionCache", arguments: dict[str, Any]) -> "Motion":
     return cache.motions[key]
 
 
-def slider_run(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    reverse: bool = False,
-    at: tuple[float, ...] = (),
-) -> "Motion":
+def slider_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> "Motion":
     """The run of the scene's slider. Raises InputError where it stops early or its step has not converged."""
-    from verify.dynamics.arguments import Keep
+    return _slider_run(scene, cache, slider, motion_arguments(scene, by))
+
+
+def _slider_run(
+    scene: Scene, cache: SolutionCache, slider: SliderOptions, arguments: dict[str, Any], at: tuple[float, ...] = ()
+) -> "Motion":
     from verify.dynamics.step_control import CONVERGED
 
-    arguments = motion_arguments(scene, by)
-    if reverse:
-        own = arguments["excitation"]
-        backward = [replace(one, phase_deg=-one.phase_deg) for one in own.forces]
-        arguments["excitation"] = replace(own, forces=backward)
-    own = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
-    run = _simulated(cache, arguments | own)
+    sliding = {"slider": slider.of(scene), "step": slider.time_step(scene), "keep": Keep(at=at, samples=2)}
+    run = _simulated(cache, arguments | sliding)
     status = run.statistics
     if not status.finished:
         raise InputError(f"time = {arguments['duration']:.12g} s: the slider {status.stopped}, give a shorter time")
@@ -134,33 +126,35 @@ def slider_run(
     return run
 
 
-def _of_run(name: str, unit: str, summary: str) -> None:
-    """Register an attribute of the motion as a quantity."""
-
-    @quantity(f"slider.{name}", unit=unit, summary=summary)
-    def of_run(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-        return float(getattr(slider_run(scene, cache, by, slider), name))
-
-
-_of_run("displacement", "m", "Displacement of the scene's slider along +x at the end of the run.")
-_of_run("mean_speed", "m/s", "Mean speed of the slider along +x: displacement over duration.")
-_of_run("largest_friction", "N", "Largest friction force on the slider.")
-_of_run("mean_friction", "N", "Mean friction force on the slider along +x.")
-_of_run("mean_surface_speed", "m/s", "Mean tangential velocity of the surface under the slider.")
+slider = figures("slider", slider_run)
+slider("displacement", "m", "Displacement of the scene's slider along +x at the end of the run.")
+slider("mean_speed", "m/s", "Mean speed of the slider along +x: displacement over duration.")
+slider("largest_friction", "N", "Largest friction force on the slider.")
+slider("mean_friction", "N", "Mean friction force on the slider along +x.")
+slider("mean_surface_speed", "m/s", "Mean tangential velocity of the surface under the slider.")
+slider(
+    "imbalance",
+    "1",
+    "Residual of the energy balance of beam and slider in a run from rest, over the work of the forces.",
+    "energy_from_rest.imbalance",
+)
 
 
 @quantity("slider.reversal", unit="1")
-def reversal(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
+def reversal(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> float:
     """Displacement with reversed drive phases over displacement; negative where the slider reverses."""
-    there = slider_run(scene, cache, by, slider).displacement
-    back = slider_run(scene, cache, by, slider, reverse=True).displacement
-    return back / there if there else float("nan")
+    arguments = motion_arguments(scene, by)
+    drive = arguments["excitation"]
+    reversed_drive = replace(drive, forces=[replace(force, phase_deg=-force.phase_deg) for force in drive.forces])
+    back = _slider_run(scene, cache, slider, arguments | {"excitation": reversed_drive}).displacement
+    forth = _slider_run(scene, cache, slider, arguments).displacement
+    return back / forth if forth else float("nan")
 
 
 @quantity("slider.order", unit="1")
 def order(
     scene: Scene,
-    cache: "SolutionCache",
+    cache: SolutionCache,
     by: TimeOptions,
     slider: SliderOptions,
     *,
@@ -168,7 +162,6 @@ def order(
     steps: Annotated[tuple[Annotated[float, Meta(gt=0)], ...], Meta(description="three or more, s")] | None = None,
 ) -> float:
     """Observed order of the slider's displacement: in N (reference: exact beam) or in the step (a sixteenth of it)."""
-    from verify.analysis.comparison import asymptotic_order, relative_error
 
     def displacement(by: TimeOptions, step: float | None = None) -> float:
         return slider_run(scene, cache, by, replace(slider, step=step or slider.step)).displacement
@@ -192,51 +185,27 @@ def order(
 
 
 @quantity("slider.deflection", unit="m")
-def deflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
+def deflection(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions, *, x: Place) -> float:
     """Deflection of the beam at x at the end of the run, with the slider in contact."""
-    return float(slider_run(scene, cache, by, slider, at=(x,)).deflection[-1, 0])
+    return float(_slider_run(scene, cache, slider, motion_arguments(scene, by), at=(x,)).deflection[-1, 0])
 
 
-def _energy_balance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> "EnergyBalance":
-    run = slider_run(scene, cache, by, slider)
-    if run.energy is None or run.end.steady:
-        raise InputError("start = 'steady': the energy balance needs a run from rest, give start = 'rest'")
-    return run.energy
+Cause = Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")]
+Term = Annotated[
+    Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
+    Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
+]
 
 
 @quantity("slider.energy", unit="J")
-def energy(
-    scene: Scene,
-    cache: "SolutionCache",
-    by: TimeOptions,
-    slider: SliderOptions,
-    *,
-    of: Annotated[
-        Literal["external_work", "damping_loss", "friction_loss", "slider", "friction_on_beam", "normal_on_beam"],
-        Meta(description="work of the forces, losses, kinetic energy of the slider, or work of contact on the beam"),
-    ],
-) -> float:
+def energy(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions, *, of: Term) -> float:
     """A term of the energy balance of beam and slider in a run from rest."""
-    balance = _energy_balance(scene, cache, by, slider)
+    balance = slider_run(scene, cache, by, slider).energy_from_rest
     return float(getattr(balance, "drive_work" if of == "external_work" else of))
 
 
-@quantity("slider.imbalance", unit="1")
-def imbalance(scene: Scene, cache: "SolutionCache", by: TimeOptions, slider: SliderOptions) -> float:
-    """Residual of the energy balance of beam and slider in a run from rest, over the work of the forces."""
-    balance = _energy_balance(scene, cache, by, slider)
-    if not balance.drive_work:
-        raise InputError("drive.force does no work in this run: give it an amplitude, or measure slider.energy")
-    return abs(balance.residual / balance.drive_work)
-
-
 @quantity("slider.coupling_size", unit="1")
-def coupling_size(
-    scene: Scene,
-    cache: "SolutionCache",
-    *,
-    of: Annotated[Literal["friction", "normal"], Meta(description="friction mu N, or the inertia: m omega^2 |G|")],
-) -> float:
+def coupling_size(scene: Scene, cache: SolutionCache, *, of: Cause) -> float:
     """Size of two-way coupling: surface motion due to the slider relative to that of the wave, exact beam."""
     by = TimeOptions(model="analytic", start="steady", time=1.0 / opt.drive_frequency(scene))
     coupling = slider_run(scene, cache, by, SliderOptions()).coupling
@@ -248,14 +217,9 @@ def coupling_size(
 
 
 @quantity("motion.reflection", unit="1", reads=("beam", "drive", "motion"))
-def reflection(scene: Scene, cache: "SolutionCache", by: TimeOptions, *, window: Window) -> float:
+def reflection(scene: Scene, cache: SolutionCache, by: TimeOptions, *, window: Window) -> float:
     """Reflection Gamma in a window of the driven beam in time, without slider: two waves fitted to its phasors."""
     import numpy as np
-
-    from verify.dynamics.arguments import Keep
-    from verify.linear.positions import positions_on
-    from verify.travelling_wave import measure_series
-    from verify.waves.window import check_span, check_waves
 
     arguments, beam = motion_arguments(scene, by), scene.beam
     excitation = arguments["excitation"]

@@ -6,9 +6,9 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 from typing import Any
 
 from verify.formatting import with_unit
-from verify.options import DRIVE_UNITS
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
+from verify.settings import DRIVE_UNITS
 
 WIDTH, EDGE = 8.4, 0.83
 """Width of the drawing and of the margin at each end of the beam, inches."""

@@ -12,12 +12,12 @@ from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
 from verify.errors import InputError, raise_all
-from verify.options import DriveKind, Reference
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device
 from verify.problem.slider import Slider
 from verify.problem.supports import check_free
 from verify.scene.file import NamedBeam
+from verify.settings import DriveKind, Reference
 from verify.validation import check_number, unit
 
 

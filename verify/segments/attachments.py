@@ -162,14 +162,14 @@ def _correct(chain: Chain, places: Array, rows: list[int], lateral: Array, turne
     forces, couples = lateral[rows][:, ::order], turned[rows][:, ::order]
     ahead = np.arange(first, n + 1)[:, None] - np.arange(first, beyond)
     of_forces = joints[:, None] - x + (forces[:, first:] @ np.maximum(ahead, 0)).T
-    alone = roots * np.hstack([of_forces, 1.0 - (couples[:, first:] @ (ahead[:-1] >= 0)).T])
+    uncorrected = roots * np.hstack([of_forces, 1.0 - (couples[:, first:] @ (ahead[:-1] >= 0)).T])
     # least moments exact for distant loads, and the remainder exact for mutual compliances
     basis, triangle = np.linalg.qr(roots * joints[:, None] ** powers, mode="complete")
     far = len(powers)
     least = basis[:, :far] @ np.linalg.solve(triangle[:far].T, _far_integrals(x, edge, powers[:, None]))
     values, vectors = np.linalg.eigh(_mutual_integrals(edge - x) - least.T @ least)
     lacking = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-    aligned = basis[:, far:].T @ alone @ lacking
+    aligned = basis[:, far:].T @ uncorrected @ lacking
     moments = (least + basis[:, far:] @ _rotation(aligned) @ lacking) / roots
     # weights from the changes of link forces and of moments
     every = np.zeros((2 * count, before + beyond - first + 2))
@@ -209,8 +209,8 @@ def _far_integrals(x: Array, edge: float, p: Array) -> Array:
 
 def _mutual_integrals(to_edge: Array) -> Array:
     """Integrals of M N less the joint sums from the edge on, (2 n, 2 n): n forces, n couples at `to_edge` before it."""
-    one, other = to_edge[:, None], to_edge
-    cut, product, total = np.minimum(one, other), one * other, one + other
+    row, column = to_edge[:, None], to_edge
+    cut, product, total = np.minimum(row, column), row * column, row + column
     forces = product * cut - total * cut**2 / 2.0 + cut**3 / 3.0 - product / 2.0 + total / 12.0
-    mixed = one * cut - cut**2 / 2.0 - one / 2.0 + 1.0 / 12.0 + 0.0 * other
+    mixed = row * cut - cut**2 / 2.0 - row / 2.0 + 1.0 / 12.0 + 0.0 * column
     return np.block([[forces, mixed], [mixed.T, cut - 0.5]])

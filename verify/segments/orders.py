@@ -7,14 +7,19 @@ lowest dominates for many links.
 from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING
 
+from verify.settings import WALLS
+
 if TYPE_CHECKING:
     from verify.problem.beam import Beam
 
-_WALL_ORDERS = {"half": 2, "full": 1, "welded": 2, "third-order": 3}  # order of the wall rules, where it is less than 4
+_DERIVED = {"series", "printed", "tensioned", "reciprocal", "lever", "euler-bernoulli", "rayleigh", "timoshenko"}
+"""Choices for which the orders are derived; that of a wall rule follows from its weights."""
 
 
 def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: str, attachment: str) -> int | None:
-    """Order of the frequencies of a chain; None where it depends on the number of links."""
+    """Order of the frequencies of a chain; None where it is not derived or depends on the number of links."""
+    if not {joints, attachment, theory} <= _DERIVED:
+        return None
     graded, lever = grading != 1.0, attachment == "lever"
     thick, sheared = theory != "euler-bernoulli", theory == "timoshenko"
     ends = (0.0, beam.length)
@@ -29,7 +34,7 @@ def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: st
         (2, bool(beam.section) or graded),
         (2, bool(beam.tension or thick) and joints != "tensioned"),
         (2, sheared and bool(beam.foundation or inside)),
-        (_WALL_ORDERS.get(wall, 4), "clamped" in beam.supports or elastic),
+        (WALLS[wall].order, "clamped" in beam.supports or elastic),
         (1, _coincide(rotational, steps)),  # a chain bends equally on both sides of a step
         (1, graded and not lever and _coincide(lateral, steps)),
         (1, lever and bool(rotational)),
@@ -50,8 +55,8 @@ def _steps(beam: "Beam", *figures: str) -> list[float]:
     places = accumulate(piece.length for piece in beam.pieces)
     return [
         at
-        for at, (one, other) in zip(places, pairwise(beam.pieces), strict=False)
-        if not figures or any(getattr(one, name) != getattr(other, name) for name in figures)
+        for at, (left, right) in zip(places, pairwise(beam.pieces), strict=False)
+        if not figures or any(getattr(left, name) != getattr(right, name) for name in figures)
     ]
 
 

@@ -1,21 +1,22 @@
-"""Stiffness and mass of a chain with attachments: the base of `SegmentModel`, which defines links and joints."""
+"""Links, joints, stiffness and mass of a chain with attachments: the base of `SegmentModel`."""
 
-from abc import abstractmethod
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from verify.arrays import Array
+from verify.errors import InputError
 from verify.linear.discrete import DiscreteModel
-from verify.linear.mesh import Parts
+from verify.linear.mesh import Parts, divide
 from verify.linear.system import StructuralSystem
-from verify.options import Attachment, Joints, Wall
 from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights
 from verify.segments.bodies import Attached
-from verify.segments.chain import Chain, Motions, at_joints, link_mass, plain_factors, selection, squares
+from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, plain_factors, selection, squares
+from verify.segments.walls import reading_factors, tension_excess, wall_factors
+from verify.settings import WALLS, Attachment, Joints, Wall
 
 
 class ChainStructure(DiscreteModel):
@@ -24,33 +25,85 @@ class ChainStructure(DiscreteModel):
     n_segments: int
     wall: Wall
     joints: Joints
+    grading: float
     attachment: Attachment
     joint_dashpot: float
 
     @property
-    @abstractmethod
+    def unit(self) -> float:
+        """Mean length of a link, m, without what is part of a clamped wall."""
+        return self.beam.length / (self.n_segments + WALLS[self.wall].first * self.beam.supports.count("clamped"))
+
+    # --- Links, joints and walls ---------------------------------------------------------------------------------
+
+    @cached_property
     def links(self) -> Parts:
-        """Lengths and properties of the links."""
+        """Lengths and properties of the links; steps of the beam are at joints."""
+        return divide(self.beam, self.n_segments, self.grading)
 
-    @property
-    @abstractmethod
+    @cached_property
     def chain(self) -> Chain:
-        """Links and joints without attachments."""
+        """Links and joints without attachments. Raises InputError where the stiffness of a joint is not positive."""
+        lengths, masses = self.links.lengths, self.links.lengths * self.links.masses_per_length
+        compliances = self._corrected_compliances.copy()
+        compliances[[0, -1]] += self.attached.end_springs
+        inertias = link_inertia(masses, lengths)
+        if self._thick:
+            inertias = inertias + self._rotary_inertias
+        return Chain(
+            supports=self.beam.supports,
+            unit=self.unit,
+            start=WALLS[self.wall].first * (self.beam.supports[0] == "clamped"),
+            lengths=lengths,
+            compliances=compliances,
+            masses=masses,
+            inertias=inertias,
+            elastic=self.attached.elastic,
+            flexibilities=lengths / self.links.stiffnesses if self.beam.stepped else None,
+            reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
+            if any(self.attached.elastic)
+            else None,
+        )
 
-    @property
-    @abstractmethod
+    def _joint_compliances(self, stiffnesses: Array) -> Array:
+        """1/k of joints 0..N by Eq. (1), (N + 1,), times the wall factors; `stiffnesses` (N,) are EI of the links."""
+        lengths = self.links.lengths
+        halves = 0.5 * lengths / stiffnesses
+        inner = halves[:-1] + halves[1:]
+        if self.joints == "printed":
+            # k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i) is dimensionally right but pairs the wrong links:
+            # order 1 where both I and E / l differ; for EI without E, E is 1 and "printed" equals "series"
+            e, i = self.links.moduli, self.links.second_moments
+            inner = 0.5 * lengths[1:] / (e[1:] * i[:-1]) + 0.5 * lengths[:-1] / (e[:-1] * i[1:])
+        return np.concatenate([2.0 * halves[:1], inner, 2.0 * halves[-1:]]) * self._wall_factors
+
+    @cached_property
     def _wall_factors(self) -> Array:
-        """Wall factors on the compliances of joints 0..N, (N + 1,)."""
+        return wall_factors(self.beam.supports, self.n_segments, self.wall, self.attached.elastic)
 
-    @property
-    @abstractmethod
+    @cached_property
     def _beam_compliances(self) -> Array:
         """1/k of the joints with the beam's bending stiffness, (N + 1,)."""
+        return self._joint_compliances(self.links.stiffnesses)
 
-    @property
-    @abstractmethod
+    @cached_property
     def _corrected_compliances(self) -> Array:
-        """1/k with the corrections of tensioned joints, (N + 1,)."""
+        """1/k of tensioned joints, (N + 1,): EI - T l^2/12 in Eq. (1), and less at a clamped wall."""
+        if self.joints != "tensioned" or not self.beam.tension:
+            return self._beam_compliances
+        lengths, stiffnesses = self.links.lengths, self.links.stiffnesses - self._tension * self.links.lengths**2 / 12.0
+        compliances = self._joint_compliances(stiffnesses)
+        for end, (support, turns) in enumerate(zip(self.beam.supports, self.attached.elastic, strict=True)):
+            if support == "clamped" or turns:
+                excess = self._tension * lengths[-end] * tension_excess(self.wall) / 12.0
+                compliances[-end] = 1.0 / (1.0 / compliances[-end] - excess / self._wall_factors[-end] ** 2)
+        if stiffnesses.min() <= 0.0 or compliances.min() <= 0.0:
+            raise InputError(
+                f"joints = 'tensioned': beam.tension = {self.beam.tension!r} N leaves no stiffness in a joint of "
+                f"{self.n_segments} segments (limit 12 EI/l^2, at a clamped wall two thirds of it): give more segments "
+                "or choose joints = 'series'"
+            )
+        return compliances
 
     @property
     def _thick(self) -> bool:
@@ -124,13 +177,13 @@ class ChainStructure(DiscreteModel):
             return StructuralSystem(plain_factors(chain), stiffness, link_mass(motions), self._rigid(None))
         # strain rows over (link rotations, unknowns v), and their stiffnesses
         links = selection(np.arange(n), np.arange(n), (n, n + motions.n))
-        own = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
+        unknowns = selection(np.arange(motions.n), n + np.arange(motions.n), (motions.n, n + motions.n))
         strains = [(motions.angles_of[self._springs], 1.0 / chain.compliances[self._springs])]
-        strains.append((own[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
+        strains.append((unknowns[motions.n - motions.n_slips :], np.ones(motions.n_slips)))
         bound = 0.0
         if beam.foundation:
             ground = self._foundation * lengths
-            strains += [(motions.middles @ own, ground), (links, ground * lengths**2 / 12.0)]
+            strains += [(motions.middles @ unknowns, ground), (links, ground * lengths**2 / 12.0)]
             if beam.tension >= 0.0:
                 bound = np.minimum(ground / chain.masses, ground * lengths**2 / (12.0 * chain.inertias)).min()
         if beam.tension:
@@ -159,8 +212,8 @@ class ChainStructure(DiscreteModel):
     @cached_property
     def _beam_fraction(self) -> Array:
         """Fraction of each joint's angle that is in the beam and not in a spring behind its end, (N + 1,)."""
-        own, whole = self._corrected_compliances, self.chain.compliances
-        return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
+        beam, whole = self._corrected_compliances, self.chain.compliances
+        return np.divide(beam, whole, out=np.ones(len(beam)), where=np.isfinite(whole))
 
     def _rigid(self, across: Any) -> Array:
         """Rigid-body modes, (n, 0 to 2)."""

@@ -7,21 +7,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.problem.supports import FIXED
-
-WALLS: dict[str, tuple[float, ...]] = {
-    # Gregory's end correction of the trapezoidal rule, weights 3/8, 7/6, 23/24: order 4
-    "gregory": (-5 / 8, 1 / 6, -1 / 24),
-    # the literature's k = 2EI/l, Eq. (1) with a rigid neighbour: order 2
-    "half": (-1 / 2,),
-    # the spring EI/l of an inner joint, a frequent mistake: order 1
-    "full": (0.0,),
-    # half a segment is part of the wall, and a whole joint EI/l follows it: order 2
-    "welded": (),
-    # weights 5/12, 13/12: order 3
-    "third-order": (-7 / 12, 1 / 12),
-    # weights 95/288, 317/240, 23/30, 793/720, 157/160: order 4, slightly better for low modes
-    "five-joint": (95 / 288 - 1, 317 / 240 - 1, 23 / 30 - 1, 793 / 720 - 1, 157 / 160 - 1),
-}  # corrections of the weights 1 from a clamped end on, in l/EI
+from verify.settings import WALLS
 
 
 def wall_factors(
@@ -35,7 +21,7 @@ def wall_factors(
     factors = np.ones(n_segments + 1)
     for end, support, turns in zip((0, n_segments), supports, elastic, strict=True):
         if support == "clamped" or turns:
-            corrections = np.array(WALLS[wall][: n_segments + 1])
+            corrections = np.array(WALLS[wall].corrections[: n_segments + 1])
             factors[abs(end - np.arange(len(corrections)))] += corrections
         else:
             factors[end] = np.inf if not FIXED[support].rotation else factors[end] - 0.5
@@ -48,7 +34,7 @@ def tension_excess(wall: str) -> float:
     Corrections a_k of the joints rotate link i by -l kappa sum_{k>i} a_k from the smooth line; the axial force acts on
     the squares of these rotations.
     """
-    return float(12.0 * (np.cumsum(np.array(WALLS[wall])[:0:-1]) ** 2).sum())
+    return float(12.0 * (np.cumsum(WALLS[wall].corrections[:0:-1]) ** 2).sum())
 
 
 def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> Array:
@@ -57,7 +43,7 @@ def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> A
     Corrections a_k of the joints move joint j from the smooth line by l^2 kappa sum_{k>j} a_k (k - j), and scale its
     angle by 1 + a_j.
     """
-    factors, a = np.ones(n_segments + 1), np.array(WALLS[wall])
+    factors, a = np.ones(n_segments + 1), np.array(WALLS[wall].corrections)
     for end, turns in zip((0, n_segments), elastic, strict=True):
         for j in range(1, min(len(a), n_segments + 1) * turns):
             factors[abs(end - j)] *= (1.0 - 12.0 * a[j + 1 :] @ np.arange(1, len(a) - j)) / (1.0 + a[j])

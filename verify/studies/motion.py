@@ -13,10 +13,10 @@ from verify.errors import InputError
 from verify.formatting import unit_of, unit_over
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS, bounding, discrete
-from verify.options import Start
 from verify.problem.slider import Contact
 from verify.quantities.slider import TimeOptions, motion_arguments
 from verify.report.result import Column, Figure, Movie, Result, Table
+from verify.settings import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
 from verify.validation import Relative, check_number, unit

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.formatting import unit_of, with_error, with_unit
-from verify.options import Start
+from verify.settings import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
 from verify.studies.motion import Damping, check_driven, check_start, readings, reduction_margins

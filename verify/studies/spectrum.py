@@ -14,8 +14,8 @@ from verify.errors import InputError
 from verify.exact.plate import plate_error
 from verify.formatting import theory_name
 from verify.linear.registry import MODELS
-from verify.options import THEORIES
 from verify.report.result import Column, Figure, Result, Table
+from verify.settings import THEORIES
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, variant_colors
 

@@ -24,10 +24,11 @@ from verify.analysis.solution_cache import Bracket, Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin, badness
 from verify.errors import InputError, near_name, shown
+from verify.estimate import as_plain, as_text
 from verify.files import exists, write_whole
 from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, versions, workers
-from verify.quantities.base import QUANTITIES, as_plain, as_text, evaluate
+from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.load import scene_from
 from verify.studies.base import Progress, Study

@@ -41,6 +41,10 @@ class Ending(msgspec.Struct, frozen=True):
     rigid: complex
     """Gamma_rigid, the reflection by a rigid device."""
 
+    def reflection(self, impedance: complex) -> float:
+        """|Gamma| at a device of an impedance in kg/s (rotational: N m s)."""
+        return float(abs(self.rigid) * abs(impedance - self.matched) / abs(impedance + self.own))
+
 
 def ending(
     beam: Beam, frequency_hz: float, distance: float, support: str = "pinned", *, turning: bool = False, name: str = ""
@@ -73,11 +77,6 @@ def ending(
     s = k * (1j - back @ _DECAY) if turning else 1.0 + back.sum()
     rigid = complex(back[0] - s**2 * own / unit)
     return Ending(own, -own * complex(back[0]) / rigid if beam.loss_factor else own.conjugate(), rigid)
-
-
-def reflection(impedance: complex, end: Ending) -> float:
-    """|Gamma| at a device of an impedance in kg/s (rotational: N m s)."""
-    return float(abs(end.rigid) * abs(impedance - end.matched) / abs(impedance + end.own))
 
 
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
