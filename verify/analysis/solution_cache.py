@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
 
-EULER = "euler-bernoulli"
+EULER = DEFAULT.theory
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Settings of a model other than their defaults, for instance (("wall", "half"),)."""
 

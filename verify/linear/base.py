@@ -65,7 +65,8 @@ class BeamModel(ABC):
         """Raise InputError for an unknown setting, and for missing section properties of the theory."""
         check_type("beam", self.beam, Beam)
         for name in self.settings():
-            check_setting(name, getattr(self, name))
+            if (value := getattr(self, name)) is not getattr(type(self), name, None):  # a default is valid
+                check_setting(name, value)
         if self.theory != "euler-bernoulli" and self.beam.tension:
             raise InputError(
                 f"beam.tension = {self.beam.tension!r} N with theory = {self.theory!r}: the theory is not unique, "
