@@ -6,9 +6,9 @@ are placeholders that `figure_files` turns into CSS variables, so that one SVG s
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -149,6 +149,41 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     name = escape(f"{figure.title}. {figure.caption}", quote=True)
     svg = svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
     return svg, small.getvalue()
+
+
+class MovingLine(NamedTuple):
+    """A line of a movie."""
+
+    at: Callable[[int], tuple[Any, Any]]
+    """x and y of a frame."""
+    form: str
+    """Line and marker."""
+    style: Mapping[str, Any]
+    """Further settings of the line, its label among them."""
+
+
+def animation(
+    ax: "Axes",
+    lines: Sequence[MovingLine],
+    frames: Iterable[int],
+    clock: Any,
+    text: Callable[[int], str] | None,
+    scale: tuple[float, float] = (1.0, 1.0),
+) -> tuple[Callable[[int], Sequence[Any]], Iterable[int]]:
+    """What `Movie.animate` returns, of lines on prepared axes and the text of each frame in the artist `clock`."""
+    from numpy import asarray
+
+    artists = [ax.plot([], [], line.form, **line.style)[0] for line in lines]
+
+    def update(frame: int) -> list[Any]:
+        for artist, line in zip(artists, lines, strict=True):
+            x, y = line.at(frame)
+            artist.set_data(scale[0] * asarray(x), scale[1] * asarray(y))
+        if text is not None:
+            clock.set_text(text(frame))
+        return [*artists, clock]
+
+    return update, frames
 
 
 def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> list[Any]:

@@ -1,13 +1,14 @@
-"""What the tables and charts of several studies share: columns, lines in suitable units."""
+"""What the tables, charts and movies of several studies share: columns, lines in suitable units."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from verify.analysis.variants import Variant
-from verify.formatting import unit_over
+from verify.formatting import unit_of, unit_over
 from verify.linear.registry import MODELS
-from verify.report.plotting import CYCLE, MODEL_COLORS
-from verify.report.result import Column, Table
+from verify.report.plotting import CYCLE, MODEL_COLORS, MovingLine, animation
+from verify.report.result import Column, Figure, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +25,16 @@ def si(name: str, unit: str, form: str = ".4g") -> "Column":
 def percent(name: str, form: str = "+.4g") -> "Column":
     """A column of ratios that are shown in per cent."""
     return Column(name, format=form, percent=True)
+
+
+def unit_symbol(unit: str) -> str:
+    """The unit of a quantity for a table or an axis: none for '1'."""
+    return "" if unit == "1" else unit
+
+
+def labelled(name: str, unit: str) -> str:
+    """'mode.frequency, Hz': a quantity as the label of an axis."""
+    return f"{name}, {unit_symbol(unit)}".rstrip(", ")
 
 
 def table(title: str, items: Iterable[Any], columns: "Mapping[Column, Callable[[Any], Any]]", *notes: str) -> "Table":
@@ -45,15 +56,24 @@ def model_style(model: str) -> dict[str, Any]:
 def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
     """The colour of a model for its first variant, others from the colour cycle."""
     colors: dict[Variant, str] = {}
-    for one in variants:
-        first = all(other.model != one.model for other in colors)
-        colors[one] = model_style(one.model)["color"] if first else CYCLE[len(colors) % len(CYCLE)]
+    for variant in variants:
+        first = all(other.model != variant.model for other in colors)
+        colors[variant] = model_style(variant.model)["color"] if first else CYCLE[len(colors) % len(CYCLE)]
     return colors
 
 
-def plot_lines(
-    ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
-) -> None:
+Line = tuple[str, Any, Any, dict[str, Any]]
+"""Label, x, y, in SI units, style."""
+Axis = tuple[str, str]
+"""Name and SI unit."""
+
+
+def line_chart(name: str, title: str, caption: str, lines: Iterable[Line], x: Axis, y: Axis) -> Figure:
+    """A chart of lines."""
+    return Figure(name, title, caption, partial(plot_lines, lines=list(lines), x=x, y=y))
+
+
+def plot_lines(ax: "Axes", lines: Iterable[Line], x: Axis, y: Axis) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
@@ -64,3 +84,25 @@ def plot_lines(
     ax.set(xlabel=f"{x[0]}, {x_unit.name}".rstrip(", "), ylabel=f"{y[0]}, {y_unit.name}".rstrip(", "))
     if any(label for label, *_ in drawn):
         ax.legend()
+
+
+def beam_movie(
+    lines: "Sequence[MovingLine]",
+    frames: Iterable[int],
+    length: float,
+    height: float,
+    text: Callable[[int], str] | None = None,
+) -> "Callable[[Axes], Any]":
+    """A movie of lines over a beam of this length, m, up to this height, m, with a text for each frame in a corner."""
+    along, up = unit_of(length), unit_of(height)
+
+    def set_up(ax: "Axes") -> Any:
+        ends = (-0.05 * along.factor * length, 1.05 * along.factor * length)
+        top = 1.2 * up.factor * height
+        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", xlim=ends, ylim=(-top, top))
+        clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
+        result = animation(ax, lines, frames, clock, text, scale=(along.factor, up.factor))
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(lines), 4))
+        return result
+
+    return set_up

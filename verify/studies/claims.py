@@ -7,6 +7,7 @@ from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Result, Table
 from verify.studies.base import Progress, Study
+from verify.studies.charts import unit_symbol
 
 if TYPE_CHECKING:
     from verify.scene.model import Claim, Scene
@@ -72,8 +73,7 @@ def of_scene(claim: "Claim") -> bool:
 
 def unit_of(claim: "Claim") -> str:
     """Unit of its quantity, empty for a ratio. Raises InputError for an unknown quantity."""
-    unit = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit_of(claim.arguments)
-    return "" if unit == "1" else unit
+    return unit_symbol(QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit_of(claim.arguments))
 
 
 def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: Any) -> float:

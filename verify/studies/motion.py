@@ -1,6 +1,5 @@
 """The slider of a scene in time: displacement, velocity, friction on every model, validity margins."""
 
-from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from msgspec import Meta
@@ -8,17 +7,19 @@ from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.verdict import Margin, verdict_of
+from verify.analysis.verdict import verdict_of
 from verify.errors import InputError
-from verify.formatting import unit_of, unit_over
+from verify.formatting import unit_over
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS, bounding, discrete
 from verify.options import Start
 from verify.problem.slider import Contact
 from verify.quantities.slider import TimeOptions, motion_arguments
+from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
+from verify.studies.charts import beam_movie, line_chart, model_style, percent, si, sized_title, table
+from verify.studies.margins import reduction_margins
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
@@ -51,16 +52,6 @@ def check_driven(table: str, scene: "Scene") -> None:
     if not scene.forces or scene.drive is None:
         raise InputError(f"{table}: a beam moves in time under a [drive] with forces, add them")
     scene.in_time(scene.forces, scene.drive.frequency_hz)
-
-
-def reduction_margins(scene: "Scene") -> list[Margin]:
-    """Margin of the actuators' reduction to springs and masses in time; none for other drives."""
-    hertz = scene.drive.frequency_hz if scene.drive else 0.0
-    error = scene.in_time(scene.forces, hertz).error
-    if not error:
-        return []
-    softer = "use a shorter actuator, or compare with quantities of the steady wave"
-    return [Margin(name="actuators as springs and masses", size=error, where=f"at {hertz:g} Hz", remedy=softer)]
 
 
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -141,8 +132,8 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         condition = f"{slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
 
         def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
-            drawn = partial(plot_lines, lines=lines, x=("time", "s"), y=(name, unit))
-            return Figure(f"slider-{name.split(maxsplit=1)[0]}", marked(title, margins), "Along +x.", drawn)
+            short = f"slider-{name.split(maxsplit=1)[0]}"
+            return line_chart(short, marked(title, margins), "Along +x.", lines, ("time", "s"), (name, unit))
 
         def of_all(name: str) -> list[Any]:
             return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
@@ -229,30 +220,25 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
 
 
 def _movie(run: "Run") -> "Callable[[Axes], Any]":
-    def set_up(ax: "Axes") -> Any:
-        import numpy as np
+    """The links with the slider on them, and the friction on it as a bar."""
+    import numpy as np
 
-        kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
-        along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])
-        time = unit_over([float(run.times[-1])], "s")
-        x, friction = along.factor * run.points, run.friction / (float(abs(run.friction).max()) or 1.0)
-        (links,) = ax.plot(x, 0.0 * x, "-o", markersize=3, label=_title(run), **model_style(run.model))
-        (force,) = ax.plot([], [], color=FRICTION, linewidth=3.0, label="friction on the slider")
-        (block,) = ax.plot([], [], "s", color=SLIDER, markersize=10, label="slider")
-        top = 1.2 * up.factor * float(abs(run.deflection).max())
-        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", ylim=(-top, top))
-        clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    frames = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int)).tolist()
+    time, length = unit_over([float(run.times[-1])], "s"), float(run.points[-1])
+    friction = run.friction / (float(abs(run.friction).max()) or 1.0)
 
-        def update(k: int) -> list[Any]:
-            place, y = along.factor * run.position[k], up.factor * run.deflection[k]
-            height = float(np.interp(place, x, y))
-            links.set_ydata(y)
-            force.set_data([place, place + 0.08 * x[-1] * friction[k]], [height, height])
-            block.set_data([place], [height])
-            clock.set_text(f"{time.factor * run.times[k]:.3f} {time.name}")
-            return [links, force, block, clock]
+    def slider_at(k: int) -> tuple[list[float], list[float]]:
+        return [run.position[k]], [float(np.interp(run.position[k], run.points, run.deflection[k]))]
 
-        return update, kept.tolist()
+    def friction_at(k: int) -> tuple[list[float], list[float]]:
+        (place,), height = slider_at(k)
+        return [place, place + 0.08 * length * friction[k]], 2 * height
 
-    return set_up
+    links = {"markersize": 3, "label": _title(run)} | model_style(run.model)
+    lines = [
+        MovingLine(lambda k: (run.points, run.deflection[k]), "-o", links),
+        MovingLine(friction_at, "-", {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}),
+        MovingLine(slider_at, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
+    ]
+    clock = lambda k: f"{time.factor * run.times[k]:.3f} {time.name}"  # noqa: E731
+    return beam_movie(lines, frames, length, float(abs(run.deflection).max()), clock)

@@ -1,7 +1,6 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, on every model."""
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from math import copysign, inf
@@ -15,7 +14,8 @@ from verify.formatting import unit_of, with_error, with_unit
 from verify.options import Start
 from verify.studies.base import Progress, Study
 from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.studies.motion import Damping, check_driven, check_start, readings, reduction_margins
+from verify.studies.margins import path_margins, reduction_margins
+from verify.studies.motion import Damping, check_driven, check_start, readings
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from verify.report.result import Figure, Result, Table
     from verify.scene.model import Scene
 
-UNEVEN = 1.25
-"""Standing-wave ratio from which the crest speed, and with it that of a slider on short feet, varies along the beam by
-more than a tenth about its mean."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
 SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
@@ -209,19 +206,6 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
         free = "free vibrations of the beam, which decay by contact alone, may be left out"
         margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, condition=free))
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
-
-
-def path_margins(model: str, count: int | None, scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
-    """Condition of the speed of a slider that moves along a partly standing wave."""
-    from verify.analysis.verdict import Margin
-    from verify.quantities.base import evaluate
-
-    with suppress(InputError):  # no two waves in the window
-        ratio: Any = evaluate("wave.standing_wave_ratio", {"model": model, "count": count}, scene, cache)
-        path = f"the speed along the path of the run is meant (standing-wave ratio {ratio:.3g})"
-        name = "variation of the speed along the beam"
-        return [Margin(name=name, size=ratio, fine=UNEVEN, limit=inf, condition=path, is_error=False)]
-    return []
 
 
 def _tables(fields: list[Field]) -> "list[Table]":
