@@ -6,9 +6,9 @@ are placeholders that `figure_files` turns into CSS variables, so that one SVG s
 
 import io
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -151,39 +151,25 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     return svg, small.getvalue()
 
 
-class MovingLine(NamedTuple):
-    """A line of a movie."""
-
-    at: Callable[[int], tuple[Any, Any]]
-    """x and y of a frame."""
-    form: str
-    """Line and marker."""
-    style: Mapping[str, Any]
-    """Further settings of the line, its label among them."""
+MovingLine: TypeAlias = tuple[Callable[[int], tuple[Any, Any]], str, Mapping[str, Any]]
+"""x and y of a frame, line and marker, further settings."""
 
 
 def animation(
-    ax: "Axes",
-    lines: Sequence[MovingLine],
-    frames: Iterable[int],
-    clock: Any,
-    text: Callable[[int], str] | None,
-    scale: tuple[float, float] = (1.0, 1.0),
-) -> tuple[Callable[[int], Sequence[Any]], Iterable[int]]:
-    """What `Movie.animate` returns, of lines on prepared axes and the text of each frame in the artist `clock`."""
-    from numpy import asarray
+    ax: "Axes", lines: Sequence[MovingLine], clock: Any, text: Callable[[int], str], scale: Sequence[float] = (1, 1)
+) -> Callable[[int], list[Any]]:
+    """What moves lines on prepared axes to a frame, x and y scaled, and shows its text in the artist `clock`."""
+    from numpy import atleast_1d
 
-    artists = [ax.plot([], [], line.form, **line.style)[0] for line in lines]
+    artists = [ax.plot([], [], form, **style)[0] for _, form, style in lines]
 
     def update(frame: int) -> list[Any]:
-        for artist, line in zip(artists, lines, strict=True):
-            x, y = line.at(frame)
-            artist.set_data(scale[0] * asarray(x), scale[1] * asarray(y))
-        if text is not None:
-            clock.set_text(text(frame))
+        for artist, (at, *_) in zip(artists, lines, strict=True):
+            artist.set_data(*(factor * atleast_1d(values) for factor, values in zip(scale, at(frame), strict=True)))
+        clock.set_text(text(frame))
         return [*artists, clock]
 
-    return update, frames
+    return update
 
 
 def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> list[Any]:

@@ -2,17 +2,18 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 from verify.analysis.variants import Variant
 from verify.formatting import unit_of, unit_over
 from verify.linear.registry import MODELS
 from verify.report.plotting import CYCLE, MODEL_COLORS, MovingLine, animation
 from verify.report.result import Column, Figure, Table
+from verify.studies.base import Axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
+Columns: TypeAlias = Mapping[Column, str | Callable[[Any], Any]]
+Line: TypeAlias = tuple[str, Any, Any, dict[str, Any]]  # label, x, y in SI units, style
+Axis: TypeAlias = tuple[str, str]  # name, SI unit
 THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact beam below them
 MOST_POINTS = 2000
 
@@ -37,9 +38,10 @@ def labelled(name: str, unit: str) -> str:
     return f"{name}, {unit_symbol(unit)}".rstrip(", ")
 
 
-def table(title: str, items: Iterable[Any], columns: "Mapping[Column, Callable[[Any], Any]]", *notes: str) -> "Table":
-    """A row of each item; every column with the function that reads its value from an item."""
-    return Table(title, list(columns), [[read(item) for read in columns.values()] for item in items], notes)
+def table(title: str, items: Iterable[Any], columns: Columns, *notes: str) -> Table:
+    """A row of each item; every column with the key of its value in an item, or the function that reads it."""
+    rows = [[item[read] if isinstance(read, str) else read(item) for read in columns.values()] for item in items]
+    return Table(title, list(columns), rows, notes)
 
 
 def sized_title(model: str, count: int | None) -> str:
@@ -62,18 +64,12 @@ def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
     return colors
 
 
-Line = tuple[str, Any, Any, dict[str, Any]]
-"""Label, x, y, in SI units, style."""
-Axis = tuple[str, str]
-"""Name and SI unit."""
-
-
 def line_chart(name: str, title: str, caption: str, lines: Iterable[Line], x: Axis, y: Axis) -> Figure:
     """A chart of lines."""
     return Figure(name, title, caption, partial(plot_lines, lines=list(lines), x=x, y=y))
 
 
-def plot_lines(ax: "Axes", lines: Iterable[Line], x: Axis, y: Axis) -> None:
+def plot_lines(ax: Axes, lines: Iterable[Line], x: Axis, y: Axis) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
@@ -87,22 +83,18 @@ def plot_lines(ax: "Axes", lines: Iterable[Line], x: Axis, y: Axis) -> None:
 
 
 def beam_movie(
-    lines: "Sequence[MovingLine]",
-    frames: Iterable[int],
-    length: float,
-    height: float,
-    text: Callable[[int], str] | None = None,
-) -> "Callable[[Axes], Any]":
-    """A movie of lines over a beam of this length, m, up to this height, m, with a text for each frame in a corner."""
+    lines: Sequence[MovingLine], frames: Iterable[int], length: float, height: float, text: Callable[[int], str]
+) -> Callable[[Axes], Any]:
+    """What `Movie.animate` is, of lines in SI units over a beam of this length up to this height, m."""
     along, up = unit_of(length), unit_of(height)
 
-    def set_up(ax: "Axes") -> Any:
-        ends = (-0.05 * along.factor * length, 1.05 * along.factor * length)
-        top = 1.2 * up.factor * height
-        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", xlim=ends, ylim=(-top, top))
+    def animate(ax: Axes) -> Any:
+        (left, right), top = (-0.05 * length, 1.05 * length), 1.2 * up.factor * height
+        ax.set(xlim=(along.factor * left, along.factor * right), ylim=(-top, top))
+        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}")
         clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
-        result = animation(ax, lines, frames, clock, text, scale=(along.factor, up.factor))
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(lines), 4))
-        return result
+        update = animation(ax, lines, clock, text, (along.factor, up.factor))
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+        return update, frames
 
-    return set_up
+    return animate

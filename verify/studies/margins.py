@@ -3,20 +3,18 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
+from verify.analysis.comparison import ORDER_SPREAD
 from verify.analysis.margins import beam_margins, run_margins, sag_margins
 from verify.analysis.solution_cache import Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
-from verify.quantities.base import QUANTITIES, evaluate
-
-if TYPE_CHECKING:
-    from verify.scene.model import Scene
+from verify.quantities.base import QUANTITIES, Scene, evaluate
 
 CREST_SPREAD = 2.0, 25.0
 """Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
@@ -26,7 +24,7 @@ more than a tenth about its mean."""
 TRUE_OF_ANY_THEORY = ("order", ".count_needed")  # quantities that errors of beam theory do not change
 
 
-def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache) -> list[Margin]:
+def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache) -> list[Margin]:
     """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
     quantity = QUANTITIES.named(name)
     fields = msgspec.structs.fields(quantity.schema)
@@ -51,11 +49,9 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: "Scene", ca
 
 
 def figure_margins(
-    name: str, arguments: Mapping[str, Any], scene: "Scene", cache: SolutionCache, settings: Settings = ()
+    name: str, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache, settings: Settings = ()
 ) -> list[Margin]:
     """Conditions of `wave.crest_speed`, of a free slider on a wave, and of `mode.order`, near the order in theory."""
-    from verify.analysis.comparison import ORDER_SPREAD
-
     if name in ("motor.free_speed", "motor.start_time"):
         return path_margins(arguments.get("model", "segment"), arguments.get("count"), scene, cache)
     if name == "wave.crest_speed":
@@ -81,7 +77,7 @@ def figure_margins(
     return [Margin(name=what, size=ratio, fine=fine, limit=limit, condition=condition, failure=failure, is_error=False)]
 
 
-def path_margins(model: str, count: int | None, scene: "Scene", cache: SolutionCache) -> list[Margin]:
+def path_margins(model: str, count: int | None, scene: Scene, cache: SolutionCache) -> list[Margin]:
     """Condition of the speed of a slider that moves along a partly standing wave."""
     with suppress(InputError):  # no two waves in the window
         ratio: Any = evaluate("wave.standing_wave_ratio", {"model": model, "count": count}, scene, cache)
@@ -91,7 +87,7 @@ def path_margins(model: str, count: int | None, scene: "Scene", cache: SolutionC
     return []
 
 
-def reduction_margins(scene: "Scene") -> list[Margin]:
+def reduction_margins(scene: Scene) -> list[Margin]:
     """Margin of the actuators' reduction to springs and masses in time; none for other drives."""
     hertz = scene.drive.frequency_hz if scene.drive else 0.0
     error = scene.in_time(scene.forces, hertz).error

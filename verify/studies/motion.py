@@ -1,7 +1,9 @@
 """The slider of a scene in time: displacement, velocity, friction on every model, validity margins."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
@@ -17,18 +19,13 @@ from verify.problem.slider import Contact
 from verify.quantities.slider import TimeOptions, motion_arguments
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
-from verify.studies.base import Progress, Study
+from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, percent, si, sized_title, table
 from verify.studies.margins import reduction_margins
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.axes import Axes
-
     from verify.dynamics.result import Motion as Run
-    from verify.scene.model import Scene
 
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
@@ -47,7 +44,7 @@ def check_start(table: str, start: Start, soft_start_periods: float | None) -> N
         raise InputError(f"{table}.soft_start_periods = {soft_start_periods!r}: a steady beam has no start, drop it")
 
 
-def check_driven(table: str, scene: "Scene") -> None:
+def check_driven(table: str, scene: Scene) -> None:
     """Raise InputError for a scene without forces, and for a drive that has no equivalent in time."""
     if not scene.forces or scene.drive is None:
         raise InputError(f"{table}: a beam moves in time under a [drive] with forces, add them")
@@ -57,9 +54,7 @@ def check_driven(table: str, scene: "Scene") -> None:
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
-    name: ClassVar[str] = "motion"
-    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
-    title: ClassVar[str] = "The slider"
+    name, title, accepts = "motion", "The slider", ("drive.shunt",)
 
     duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
     start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"
@@ -79,20 +74,18 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
         check_start("motion", self.start, self.soft_start_periods)
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without forces, and for steps without a slider."""
         check_driven("motion", scene)
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
             raise InputError(f"motion.steps_per_period = {self.steps_per_period!r}: only a slider takes steps, drop it")
 
-    def size(self, scene: "Scene", cache: "SolutionCache") -> int:
+    def size(self, scene: Scene, cache: SolutionCache) -> int:
         """Segments and elements: as given, or the fewest within 1 % at the drive. Raises InputError."""
         return self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Simulate the slider on every model. Raises InputError, also without a slider."""
-        import numpy as np
-
         from verify.analytic_modes import check_in_time
         from verify.dynamics.arguments import Keep, Step
         from verify.dynamics.simulate import simulate
@@ -157,7 +150,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
 
-def readings(scene: "Scene") -> "Table":
+def readings(scene: Scene) -> Table:
     """Mean speed of the one slider on the exact beam by every reading of it, with the margins of each.
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
@@ -219,26 +212,24 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
     return [table("Slider on each model", all_runs, results)]
 
 
-def _movie(run: "Run") -> "Callable[[Axes], Any]":
+def _movie(run: "Run") -> Callable[[Axes], Any]:
     """The links with the slider on them, and the friction on it as a bar."""
-    import numpy as np
-
     frames = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int)).tolist()
     time, length = unit_over([float(run.times[-1])], "s"), float(run.points[-1])
     friction = run.friction / (float(abs(run.friction).max()) or 1.0)
 
-    def slider_at(k: int) -> tuple[list[float], list[float]]:
-        return [run.position[k]], [float(np.interp(run.position[k], run.points, run.deflection[k]))]
+    def slider_at(k: int) -> tuple[float, float]:
+        return run.position[k], float(np.interp(run.position[k], run.points, run.deflection[k]))
 
     def friction_at(k: int) -> tuple[list[float], list[float]]:
-        (place,), height = slider_at(k)
-        return [place, place + 0.08 * length * friction[k]], 2 * height
+        x, height = slider_at(k)
+        return [x, x + 0.08 * length * friction[k]], [height, height]
 
     links = {"markersize": 3, "label": _title(run)} | model_style(run.model)
-    lines = [
-        MovingLine(lambda k: (run.points, run.deflection[k]), "-o", links),
-        MovingLine(friction_at, "-", {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}),
-        MovingLine(slider_at, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
+    lines: list[MovingLine] = [
+        (lambda k: (run.points, run.deflection[k]), "-o", links),
+        (friction_at, "-", {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}),
+        (slider_at, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
     ]
-    clock = lambda k: f"{time.factor * run.times[k]:.3f} {time.name}"  # noqa: E731
-    return beam_movie(lines, frames, length, float(abs(run.deflection).max()), clock)
+    height = float(abs(run.deflection).max())
+    return beam_movie(lines, frames, length, height, lambda k: f"{time.factor * run.times[k]:.3f} {time.name}")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import accumulate
 from math import inf, log
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -26,14 +26,9 @@ from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.model import Limits
-from verify.studies.base import Progress
+from verify.studies.base import Axes, Progress, Scene
 from verify.studies.charts import labelled, unit_symbol
 from verify.studies.tables import OfQuantity, Row, Variants
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.scene.model import Scene
 
 Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
 STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
@@ -92,9 +87,7 @@ class Limit(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The least or largest value of a quantity over keys of the scene."""
 
-    name: ClassVar[str] = "optimise"
-    title: ClassVar[str] = "Optimum"
-    devices: ClassVar[bool] = True
+    name, title, devices = "optimise", "Optimum", True
 
     goal: Annotated[Literal["minimise", "maximise"], Meta(description="What to do with it.")] = "minimise"
     variable: Annotated[tuple[Variable, ...], Meta(min_length=1, description="What varies.")]
@@ -106,12 +99,12 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
     evaluations: Annotated[int, Meta(ge=10, description="Most points of each search.")] = 1000
     seed: Annotated[int, Meta(ge=1, description="Of random numbers.")] = 1
 
-    def variants(self, scene: "Scene") -> Variants:
+    def variants(self, scene: Scene) -> Variants:
         """The quantity, then those of the limits, on the scene."""
         limits = [(limit.quantity, limit.arguments) for limit in self.limit]
         return Variants.of(scene, [(self.quantity, self.arguments), *limits])
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
         variants = self.variants(scene)
         start = self.start(variants)
@@ -132,7 +125,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
         """Values by key."""
         return {variable.key: variable.value(u) for variable, u in zip(self.variable, point, strict=True)}
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Search the optimum, and from it again on a finer model, with the workers of `parallel`.
 
         Returns the variables with active bounds, the quantities at the start and at both optima, and the history.
@@ -221,7 +214,7 @@ class Search:
         """Of the objective in its merit."""
         return 1.0 if self.study.goal == "minimise" else -1.0
 
-    def merits(self, points: "Iterable[Iterable[float]]") -> list[float]:
+    def merits(self, points: Iterable[Iterable[float]]) -> list[float]:
         """Merit of each point: the least is the best."""
         keys: list[Point] = [tuple(map(float, point)) for point in points]
         new = [key for key in dict.fromkeys(keys) if key not in self.rows]
@@ -289,14 +282,14 @@ class Search:
         first = self.rows[start].values[0]  # of a point that violates limits if it is the optimum of a coarser model
         size = abs(first or 0.0) or 1.0
 
-        def row(x: "Array") -> Row:
+        def row(x: Array) -> Row:
             self.merits([x])
             return self.rows[tuple(map(float, x))]
 
-        def objective(x: "Array") -> float:
+        def objective(x: Array) -> float:
             return self.sign * here.values[0] / size if (here := row(x)).reason is None else 1e3
 
-        def distances(x: "Array") -> list[float]:
+        def distances(x: Array) -> list[float]:
             return self.distances(here.values) if (here := row(x)).reason is None else [-1.0] * n
 
         limits = [NonlinearConstraint(distances, 0.0, inf)] if n else []
@@ -305,7 +298,7 @@ class Search:
         if len(self.rows) - before >= most:
             self.notes.append(f"The local search stopped at its {most} points: raise optimise.evaluations.")
 
-    def draw(self, ax: "Axes") -> None:
+    def draw(self, ax: Axes) -> None:
         """Feasible points and the best so far."""
         numbers, values = zip(*self.history, strict=True)
         ax.plot(numbers, values, ".", alpha=0.5, label="points")

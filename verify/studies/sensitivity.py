@@ -6,25 +6,21 @@ them (A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270).
 """
 
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
+from verify.analysis.solution_cache import SolutionCache
+from verify.arrays import Array
 from verify.errors import InputError
 from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
-from verify.studies.base import Progress
+from verify.studies.base import Axes, Progress, Scene
 from verify.studies.charts import unit_symbol
 from verify.studies.tables import OfQuantity, Variants
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.arrays import Array
-    from verify.scene.model import Scene
 
 CONFIDENCE = 0.95
 CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling."
@@ -74,16 +70,14 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How much of the variance of a quantity each uncertain input causes."""
 
-    name: ClassVar[str] = "sensitivity"
-    title: ClassVar[str] = "Shares of uncertain inputs"
-    devices: ClassVar[bool] = True
+    name, title, devices = "sensitivity", "Shares of uncertain inputs", True
 
     logarithm: Annotated[bool, Meta(description="Shares of the logarithm of its size.")] = False
     input: Annotated[tuple[Input, ...], Meta(min_length=1, description="What is uncertain.")]
     n: Annotated[int, Meta(ge=16, description="A power of two; n (inputs + 2) values are computed.")] = 256
     seed: Annotated[int, Meta(ge=0, description="Of random numbers.")] = 1
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, argument or key, and for n that is no power of two."""
         if self.n & (self.n - 1):
             raise InputError(f"sensitivity.n = {self.n}: give a power of two, {1 << self.n.bit_length()}")
@@ -94,13 +88,11 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
         medians = [(uncertain.key, uncertain.median(variants.value(uncertain.key))) for uncertain in self.input]
         return variants.check("sensitivity.input", medians)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Evaluate the quantity at Saltelli's points with the workers of `parallel`, and estimate the shares.
 
         Raises InputError where it has no value at one of the points.
         """
-        import numpy as np
-
         self.check(scene)
         variants = Variants.of(scene, [(self.quantity, self.arguments)])
         values, first, total = self._shares(variants, progress)
@@ -126,14 +118,13 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
             margins=variants.margins({}),
         )
 
-    def _shares(self, variants: Variants, progress: Progress) -> "tuple[Array, Array, Array]":
+    def _shares(self, variants: Variants, progress: Progress) -> tuple[Array, Array, Array]:
         """(values of the quantity, first-order and total shares with the ends of their intervals, (3, inputs) each)."""
-        import numpy as np
         from scipy.stats import bootstrap, sobol_indices
 
         keys, values = [uncertain.key for uncertain in self.input], list[float]()
 
-        def quantity(points: "Array") -> "Array":
+        def quantity(points: Array) -> Array:
             """Values at points (inputs, m), which are those of the samples A and B, then of A with columns of B."""
             at = [dict(zip(keys, map(float, x), strict=True)) for x in points.T]
             row_at, sizes = partial(variants.row, real=True), dict[int, float]()
@@ -156,7 +147,7 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
         samples -= samples[: 2 * self.n].mean()
         both, mixed = samples[: 2 * self.n].reshape(2, -1), samples[2 * self.n :].reshape(self.n, -1).T
 
-        def estimates(index: "Array", axis: int = -1) -> "Array":
+        def estimates(index: Array, axis: int = -1) -> Array:
             """First-order and total shares of resampled points, (2, inputs, resamples), by Saltelli's estimator."""
             (a, b), ab = both[:, index], mixed[:, index]
             variance = both[:, index].var(axis=(0, -1))
@@ -171,7 +162,7 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
         return np.array(values), np.stack([first, low[0], high[0]]), np.stack([total, low[1], high[1]])
 
 
-def _draw(rows: list[Any], ax: "Axes") -> None:
+def _draw(rows: list[Any], ax: Axes) -> None:
     """Bars with their intervals."""
     for shift, name, k in ((0.2, "first order", 2), (-0.2, "total", 5)):
         places = [len(rows) - i + shift for i in range(len(rows))]

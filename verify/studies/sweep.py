@@ -13,9 +13,10 @@ from functools import partial
 from hashlib import sha256
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket, SolutionCache
@@ -25,14 +26,9 @@ from verify.files import exists, write_whole
 from verify.parallel import completed, versions, workers
 from verify.quantities.base import QUANTITIES, as_text
 from verify.report.result import Column, Figure, Result, Table
-from verify.studies.base import Progress, Study
+from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import labelled, unit_symbol
 from verify.studies.tables import Variants
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.scene.model import Scene
 
 MOST = 100_000  # combinations, each of which is a row in memory
 AGREE = "claims that agree"
@@ -47,9 +43,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     of lists.
     """
 
-    name: ClassVar[str] = "sweep"
-    title: ClassVar[str] = "Sweep"
-    devices: ClassVar[bool] = True
+    name, title, devices = "sweep", "Sweep", True
 
     quantities: Annotated[tuple[str, ...], Meta(min_length=1, description="Names, see `verify quantities`.")]
     over: Annotated[dict[str, list[Any]], Meta(min_length=1, description="Values by scene key or argument.")]
@@ -58,18 +52,18 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     )
     claims: Annotated[bool, Meta(description="Count the scene's claims that agree in each combination.")] = False
 
-    def variants(self, scene: "Scene") -> Variants:
+    def variants(self, scene: Scene) -> Variants:
         """The quantities on the scene, with those of the fixed arguments that each has."""
         return Variants.of(scene, [(name, {}) for name in self.quantities])
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
         combination = _combinations(self.over)[0]
         self.variants(scene).check_keys((*self.arguments, *combination), "sweep")
         if self.claims and not scene.claim:
             raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress, file: Path | None = None) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress, file: Path | None = None) -> Result:
         """Evaluate the quantities over every combination of the lists in `over`, the first key slowest.
 
         Runs on as many processes as VERIFY_JOBS says, or on the workers of `parallel.cluster`.
@@ -183,10 +177,8 @@ def _cell(value: Any) -> Any:
     return as_text(kind(*value.values())) if kind else str(value)
 
 
-def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: "Axes") -> None:
+def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: Axes) -> None:
     """A line over one list, lines or a colour map over two, by whether the second has words; gaps without a value."""
-    import numpy as np
-
     values = np.array([row[quantity.name] if _number(row[quantity.name]) else np.nan for row in rows], dtype=float)
     first, *second = study.over.items()
     places = [_place(ax, "x", *first)]
@@ -212,7 +204,7 @@ def _rising(given: list[Any]) -> bool:
     return all(map(_number, given)) and sorted(set(given)) == given
 
 
-def _place(ax: "Axes", axis: str, key: str, given: list[Any]) -> list[Any]:
+def _place(ax: Axes, axis: str, key: str, given: list[Any]) -> list[Any]:
     """Label and scale an axis for a list; the coordinates of its values."""
     getattr(ax, f"set_{axis}label")(key)
     if not _rising(given):

@@ -7,7 +7,7 @@ is an argument of the quantities that have it. Keys joined by commas have the sa
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -17,12 +17,9 @@ from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name
 from verify.quantities.base import QUANTITIES, as_plain, evaluate
 from verify.scene.load import scene_from
-from verify.studies.base import Study
+from verify.studies.base import Scene, Study
 from verify.studies.claims import computed
 from verify.studies.margins import quantity_margins
-
-if TYPE_CHECKING:
-    from verify.scene.model import Scene
 
 Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
 UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
@@ -50,7 +47,7 @@ class Variants:
     requests: Sequence[Request]
 
     @classmethod
-    def of(cls, scene: "Scene", requests: Sequence[Request]) -> "Variants":
+    def of(cls, scene: Scene, requests: Sequence[Request]) -> "Variants":
         """The variants of a scene."""
         tables = {name: msgspec.to_builtins(getattr(scene, name)) for name in scene.__struct_fields__ if name != "gate"}
         studies = tables.pop("studies")
@@ -66,7 +63,7 @@ class Variants:
                 names = ", ".join(dict.fromkeys(name for name, _ in self.requests))
                 raise InputError(f"{field}: {key} is no argument of {names}: {near_name(key, tuple(arguments))}")
 
-    def at(self, values: Mapping[str, Any], field: str = "values") -> "tuple[Scene, SolutionCache, list[Request]]":
+    def at(self, values: Mapping[str, Any], field: str = "values") -> tuple[Scene, SolutionCache, list[Request]]:
         """Scene, cache and quantities of one variant. Raises InputError."""
         each = {key.strip(): value for keys, value in values.items() for key in keys.split(",")}
         self.check_keys(each, field)

@@ -2,29 +2,26 @@
 
 from collections.abc import Callable
 from functools import partial
-from math import cos, pi, sin
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
+import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
+from verify.arrays import Array
 from verify.errors import InputError, WindowError
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
-from verify.studies.base import Progress, Study
+from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, si, sized_title, table
 from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.arrays import Array
     from verify.linear.field import HarmonicField
-    from verify.scene.model import Scene
     from verify.travelling_wave import BestDrive, DrivenCase
 
 Row: TypeAlias = dict[str, Any]
@@ -48,13 +45,12 @@ MOVIE = (
 class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The steady wave of the scene's drive, measured in the window [L/4, 3L/4]."""
 
-    name: ClassVar[str] = "wave"
-    title: ClassVar[str] = "The driven beam"
+    name, title = "wave", "The driven beam"
 
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
     counts: Annotated[Counts, Meta(description="Of the errors over N; else 1, 2, 4 times count.")] | None = None
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
         from verify.waves.window import check_span, check_waves, middle_half
 
@@ -75,7 +71,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             for count in filter(None, (self.count, *(self.counts or ()))):
                 model.build(bare, count).check_propagates(frequency)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Solve the fields of all models. Raises InputError."""
         from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
@@ -127,28 +123,25 @@ def _on(case: "DrivenCase", model: str, count: int | None) -> "DrivenCase":
 
 def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
     """The wave of each model and size at the drive, and at its own frequency of least reflection where one has it."""
-    columns: dict[Column, Callable[[Row], Any]] = {
-        Column("model"): lambda row: MODELS[row["model"]].title,
-        Column("N"): lambda row: row["N"],
-    }
-    better = any(row["best"] for row in rows)
-    for where, there in (("drive", ""), ("best", " there"))[: 1 + better]:
-        figures = {"frequency_hz": Column("best frequency", "Hz", ".2f")} if there else {}
-        figures |= {
-            "standing_wave_ratio": Column(f"SWR{there}", format=".5g"),
-            "axis_ratio": Column(f"axis ratio{there}", format="+.5f"),
-            "crest_speed": si(f"crest speed{there}", "m/s", "+.5g"),
-        }
-        columns |= {column: partial(_figure, where, name) for name, column in figures.items()}
+
+    def read(where: str, name: str) -> Callable[[Row], Any]:
+        return lambda row: row[where][name] if row[where] else None
+
+    def figures(where: str, suffix: str = "") -> dict[Column, Any]:
+        columns = {Column(f"SWR{suffix}", format=".5g"): read(where, "standing_wave_ratio")}
+        columns |= {Column(f"axis ratio{suffix}", format="+.5f"): read(where, "axis_ratio")}
+        return columns | {si(f"crest speed{suffix}", "m/s", "+.5g"): read(where, "crest_speed")}
+
+    columns: dict[Column, Any] = {Column("model"): lambda row: MODELS[row["model"]].title, Column("N"): "N"} | figures(
+        "drive"
+    )
+    if better := any(row["best"] for row in rows):
+        columns |= {Column("best frequency", "Hz", ".2f"): read("best", "frequency_hz")} | figures("best", " there")
     notes = WAVES + " Right: at its own frequency of least reflection." * better, imposed
     return table(f"The wave over N, at {hertz:g} Hz", rows, columns, *notes)
 
 
-def _figure(where: str, name: str, row: Row) -> float | None:
-    return row[where][name] if row[where] else None
-
-
-def _waves(exact: "DrivenCase", model: str, count: int | None, cache: "SolutionCache", progress: Progress) -> Row:
+def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCache, progress: Progress) -> Row:
     """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
     from verify.travelling_wave import best_frequency
 
@@ -161,7 +154,7 @@ def _waves(exact: "DrivenCase", model: str, count: int | None, cache: "SolutionC
         return row | {"note": str(error)}
 
 
-def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
+def _operation(case: "DrivenCase", cache: SolutionCache) -> dict[str, float]:
     wave = measured(case, cache)
     return {
         "frequency_hz": case.frequency_hz,
@@ -171,7 +164,7 @@ def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
     }
 
 
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> "Table":
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> Table:
     """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end."""
     from verify.waves.operating_point import lead_deg
 
@@ -192,8 +185,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
     metres, that magnification, largest true ratio of width to height).
     """
-    import numpy as np
-
     from verify.travelling_wave import surface_motion
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
@@ -207,8 +198,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
 
 def _envelopes(fields: Fields, title: str) -> Figure:
     """Amplitude over the beam on each model."""
-    import numpy as np
-
     x = np.linspace(0.0, fields[EXACT].beam.length, 601)
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
     return line_chart("wave-envelopes", title, ENVELOPES, lines, ("x", "m"), ("amplitude", "m"))
@@ -224,25 +213,22 @@ def _ellipses(field: "HarmonicField") -> Figure:
     return line_chart("wave-ellipses", title, caption, [*paths, start], ("x", "m"), ("deflection", "m"))
 
 
-def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
+def _movie(fields: Fields, count: int) -> Callable[[Axes], Any]:
     """The beam on each model, and surface points of the exact beam, over a period."""
-    import numpy as np
-
+    turn = np.exp(2j * np.pi * np.arange(FRAMES) / FRAMES)[:, None]
     length, (x_surface, height, *_) = fields[EXACT].beam.length, ellipses(fields[EXACT])
-    lines, largest = [], 0.0
+    lines, largest = list[MovingLine](), 0.0
     for model, field in fields.items():
         x = np.linspace(0.0, length, (count if MODELS[model].sized else 160) + 1)
         wave = field.deflection(x)
         largest = max(largest, float(abs(wave).max()))
         form = {"analytic": "-", "segment": "-o"}.get(model, "x")
         style = {"markersize": 3.0, "label": MODELS[model].title} | model_style(model)
-        lines.append(MovingLine(partial(_at_phase, x, wave), form, style))
+        lines.append((partial(_frame, x, (wave * turn).real), form, style))
     surface = {"color": SURFACE, "label": "surface points"}
-    lines.append(MovingLine(lambda frame: (x_surface[:, frame], height[:, frame]), "o", surface))
-    return beam_movie(lines, range(FRAMES), length, largest)
+    lines.append((lambda k: (x_surface[:, k], height[:, k]), "o", surface))
+    return beam_movie(lines, range(FRAMES), length, largest, lambda k: "")
 
 
-def _at_phase(x: "Array", wave: Any, frame: int) -> "tuple[Array, Array]":
-    """A harmonic wave at a frame of its period."""
-    turn = 2.0 * pi * frame / FRAMES
-    return x, wave.real * cos(turn) - wave.imag * sin(turn)
+def _frame(x: Array, heights: Array, k: int) -> tuple[Array, Array]:
+    return x, heights[k]
