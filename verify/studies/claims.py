@@ -74,8 +74,8 @@ def unit_of(claim: Claim) -> str:
 
 def computed(claim: Claim, scene: Scene, cache: SolutionCache, **other: Any) -> float:
     """The value of its quantity, with `other` arguments. Raises InputError."""
-    own = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
-    arguments = {name: value for name, value in (own | other).items() if value is not None}
+    defaults = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
+    arguments = {name: value for name, value in (defaults | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)
     if not isinstance(value, float | int):
         raise InputError(f"claim.{claim.id}.quantity = {claim.quantity!r} is no real number: claim another quantity")

@@ -205,7 +205,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         ax.xaxis.set_minor_locator(NullLocator())
         ax.set(xlabel="number of segments or elements N", ylabel="|frequency error|, %")
         ax.legend(ncols=2)
-        guides = {one.expected_order(cache.beam): [row for row in rows if row["variant"] == one] for one in colors}
+        guides = {v.expected_order(cache.beam): [row for row in rows if row["variant"] == v] for v in colors}
         if len(means) > 1 and means[-1]["N"] > means[-2]["N"]:  # of the highest mode
             ratio, growth = (means[-2]["mean_error"] / means[-1]["mean_error"], means[-1]["N"] / means[-2]["N"])
             if abs(log(abs(ratio)) / log(growth) - 6.0) <= ORDER_SPREAD:

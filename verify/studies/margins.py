@@ -28,7 +28,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cach
     """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
     quantity = QUANTITIES.named(name)
     fields = msgspec.structs.fields(quantity.schema)
-    values = {one.name: one.default for one in fields if not one.required} | dict(arguments)
+    values = {field.name: field.default for field in fields if not field.required} | dict(arguments)
     mode, hertz = values.get("mode"), values.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz

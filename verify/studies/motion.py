@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.verdict import verdict_of
+from verify.analysis.verdict import Margin, verdict_of
 from verify.errors import InputError
 from verify.formatting import unit_over
 from verify.linear.positions import SLACK
@@ -20,7 +20,7 @@ from verify.quantities.slider import TimeOptions, motion_arguments
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.studies.base import Axes, Progress, Scene, Study
-from verify.studies.charts import beam_movie, line_chart, model_style, percent, si, sized_title, table
+from verify.studies.charts import Line, beam_movie, line_chart, model_style, percent, si, sized_title, table
 from verify.studies.margins import reduction_margins
 from verify.validation import Relative, check_number, unit
 
@@ -31,6 +31,9 @@ STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
 LONG = 10  # durations of a long run
+TIME = ("time", "s")
+KEYS = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed", "coupling", "margins"]
+KEYS += ["energy", "statistics", "notes"]  # of a run, for JSON
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 
@@ -110,42 +113,23 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 step=Step(per_period=self.steps_per_period),
                 keep=Keep(at=nodes, samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2)),
             )
-        chain = runs[bounding()[0].name]
         sizes = [(run.model, run.count) for run in runs.values()]
         margins = beam_margins(cache, sizes, frequency_hz=scene.drive.frequency_hz)
-        margins += [one for run in runs.values() for one in run_margins(run, slider, _title(run))]
-        margins += sag_margins(cache, slider)
-        margins += reduction_margins(scene)
+        margins += [margin for run in runs.values() for margin in run_margins(run, slider, _title(run))]
+        margins += [*sag_margins(cache, slider), *reduction_margins(scene)]
         if exact:
-            true, all_runs = runs["analytic"].displacement, runs.values()
-            near = SLACK * scene.beam.length
-            margins += [against_exact("displacement", _title(run), run.displacement, true, near) for run in all_runs]
-        valid = verdict_of(margins).level != "not trusted"
+            true, near = runs["analytic"].displacement, SLACK * scene.beam.length
+            displacements = [(_title(run), run.displacement) for run in runs.values()]
+            margins += [against_exact("displacement", *moved, true, near) for moved in displacements]
+        chain, valid = runs[bounding()[0].name], verdict_of(margins).level != "not trusted"
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
-
-        def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
-            short = f"slider-{name.split(maxsplit=1)[0]}"
-            return line_chart(short, marked(title, margins), "Along +x.", lines, ("time", "s"), (name, unit))
-
-        def of_all(name: str) -> list[Any]:
-            return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
-
-        surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
-        velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
-        figures = [
-            figure("displacement", f"Displacement of the slider, N = {count}", "m", of_all("travelled")),
-            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
-            figure("friction force", f"Friction force on the slider, N = {count}", "N", of_all("friction")),
-        ]
-        keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
-        keys += ["coupling", "margins", "energy", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
-            tables=[*_tables(runs), *([readings(scene)] if exact and slider.contact is None else [])],
-            figures=figures,
+            tables=[_table(runs), *([readings(scene)] if exact and slider.contact is None else [])],
+            figures=_figures(runs, chain, count, margins),
             movies=[Movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
-            data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
+            data={"runs": {model: {key: getattr(run, key) for key in KEYS} for model, run in runs.items()}},
             margins=margins,
         )
 
@@ -158,26 +142,26 @@ def readings(scene: Scene) -> Table:
     from verify.dynamics.arguments import Keep
     from verify.dynamics.simulate import simulate
 
-    own = scene.slider
-    assert own is not None
-    point = replace(own, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
+    assert scene.slider is not None
+    mounted = scene.slider
+    point = replace(mounted, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
     opening = replace(point, kinematics="tangential", normal="bilateral", line="spline", contact=Contact())
     rows: list[tuple[Any, ...]] = []
     for name, assumption, slider, times in (
         ("tangential", "stays on the surface and moves along it alone", replace(point, kinematics="tangential"), 1),
         ("following", "stays on it and moves with it across the beam", replace(point, kinematics="following"), 1),
-        (f"{own.kinematics}, long", "the same after its start", point, LONG),
-        ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG),
+        (f"{mounted.kinematics}, long", "the same after its start", point, LONG),
+        ("contact that opens", "lifts off and lands", mounted if mounted.contact else opening, LONG),
     ):
         duration = times * scene.motion.duration
         try:
             arguments = motion_arguments(scene, TimeOptions(model="analytic", time=duration))
             run = simulate(**arguments, slider=slider, keep=Keep(samples=2))
-            found = verdict_of(run_margins(run, slider, "exact beam"))
-            worst = found.margins[0].text if found.margins else ""
-            rows.append((name, assumption, duration, run.mean_speed, found.level, worst))
+            verdict = verdict_of(run_margins(run, slider, "exact beam"))
+            worst = verdict.margins[0].text if verdict.margins else ""
+            rows.append((name, assumption, duration, run.mean_speed, verdict.level, worst))
         except InputError as error:
-            hard = "two-way coupling with hard contact" if slider is opening and own.coupling == "two-way" else ""
+            hard = "two-way coupling with hard contact" if slider is opening and mounted.coupling == "two-way" else ""
             rows.append((name, assumption, duration, None, "not computed", hard or str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[3] is not None and row[4] != "not trusted")
@@ -185,11 +169,31 @@ def readings(scene: Scene) -> Table:
     return Table("Speed of the slider", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 
 
+def _figures(runs: "dict[str, Run]", chain: "Run", count: int, margins: list[Margin]) -> list[Figure]:
+    """Displacement and friction on each model; velocities of the slider and of the chain's surface."""
+    surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
+    velocities = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
+
+    def each(figure: str) -> list[Line]:
+        return [(_title(run), run.times, getattr(run, figure), model_style(run.model)) for run in runs.values()]
+
+    return [
+        line_chart(
+            f"slider-{name.split(maxsplit=1)[0]}", marked(title, margins), "Along +x.", lines, TIME, (name, unit)
+        )
+        for name, unit, title, lines in (
+            ("displacement", "m", f"Displacement of the slider, N = {count}", each("travelled")),
+            ("velocity", "m/s", f"Velocity of the slider and the surface, {_title(chain)}", velocities),
+            ("friction force", "N", f"Friction force on the slider, N = {count}", each("friction")),
+        )
+    ]
+
+
 def _title(run: "Run") -> str:
     return sized_title(run.model, run.count)
 
 
-def _tables(runs: "dict[str, Run]") -> "list[Table]":
+def _table(runs: "dict[str, Run]") -> Table:
     from verify.dynamics.step_control import exchanged
 
     exact, all_runs = runs["analytic"].displacement if "analytic" in runs else 0.0, runs.values()
@@ -209,7 +213,7 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
         Column("steps"): lambda run: run.statistics.steps,
         Column("energy imbalance", format=".1e"): imbalance,
     }
-    return [table("Slider on each model", all_runs, results)]
+    return table("Slider on each model", all_runs, results)
 
 
 def _movie(run: "Run") -> Callable[[Axes], Any]:

@@ -146,7 +146,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
                 finer.run("COBYQA")
         values = self.values(finer.best)
         stages = [coarse.rows[begin], coarse.rows[coarse.best], finer.rows[coarse.best], finer.rows[finer.best]]
-        start, _, there, last = (row.values[0] if row.reason is None else None for row in stages)
+        start, _, refined, last = (row.numbers[0] for row in stages)
         models = [label if label and finer is not coarse else "the same" for label in labels]
         shown = [self._variables(begin, coarse.best, finer.best), self._objective(stages, models)]
         data = {"optimum": values, "points": len(coarse.rows) + (finer is not coarse) * len(finer.rows)}
@@ -157,7 +157,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
                 failure = f"no point has a value of all quantities (the first: {stages[-1].reason})"
             margins = [void("the optimum", failure, "widen optimise.variable, or relax optimise.limit")]
             return Result("", shown, warnings=notes, data=data, margins=margins)
-        loss = inf if there is None else abs(there - last) / (max(abs(last), abs(start or 0.0)) or 1.0)
+        loss = inf if refined is None else abs(refined - last) / (max(abs(last), abs(start or 0.0)) or 1.0)
         margins = []
         if any(label not in ("", EXACT) for label in labels):
             cause = "the optimum moves with the discretisation"
@@ -187,8 +187,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
         rows = []
         names, limits = [self.quantity, *(limit.quantity for limit in self.limit)], [None, *self.limit]
         for i, (name, limit, model) in enumerate(zip(names, limits, models, strict=True)):
-            sizes = [row.values[i] if row.reason is None else None for row in stages]
-            active = None
+            sizes, active = [row.numbers[i] for row in stages], None
             if limit and sizes[-1] is not None:
                 active = min(map(abs, limit.distances(sizes[-1]))) < ACTIVE
             role = limit.limits if limit else f"{self.goal}d"
@@ -328,7 +327,7 @@ def _finer(variants: Variants, values: dict[str, float]) -> tuple[Variants, list
 def _refinements(name: str, arguments: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     """(arguments, label) of a quantity on finer models, the finest first."""
     fields = msgspec.structs.fields(QUANTITIES[name].schema)
-    settings = {one.name: one.default for one in fields if not one.required} | arguments
+    settings = {entry.name: entry.default for entry in fields if not entry.required} | arguments
     model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
     exact = {key: value for key, value in arguments.items() if key != "count"} | {"model": EXACT}
     finer = [(exact, EXACT)] if model in MODELS and MODELS[model].sized else []

@@ -95,7 +95,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             sum(row["reason"] is not None for row in rows),
         )
         columns = [Column(key, format=".6g") for key in combinations[0]]
-        columns += [Column(one.name, unit_symbol(one.unit), ".7g") for one in quantities]
+        columns += [Column(q.name, unit_symbol(q.unit), ".7g") for q in quantities]
         columns += [Column(AGREE)] * self.claims + [Column("reason")] * bool(failed)
         cells = [tuple(_cell(row[column.name]) for column in columns) for row in rows]
         note, where = f"Claims of the scene: {len(scene.claim)}.", " and ".join(self.over)
@@ -103,9 +103,9 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             summary=f"{len(rows)} combinations, {failed} without a value.",
             tables=[Table(f"Sweep over {where}", columns, cells, [note] * self.claims)],
             figures=[
-                Figure(f"sweep-{one.name}", f"{one.name} over {where}", one.summary, partial(_draw, self, rows, one))
-                for one in quantities
-                if len(self.over) <= 2 and any(_number(row[one.name]) for row in rows)
+                Figure(f"sweep-{q.name}", f"{q.name} over {where}", q.summary, partial(_draw, self, rows, q))
+                for q in quantities
+                if len(self.over) <= 2 and any(_number(row[q.name]) for row in rows)
             ],
             data={"rows": rows},
             margins=margins,
@@ -141,16 +141,16 @@ def _lines(file: Path, header: bytes) -> dict[int, bytes]:
     first, *lines = text.splitlines(keepends=True) or [header]
     lines = [line for line in lines if line.endswith(b"\n")]  # a kill may leave half of one
     try:
-        own, other = json.loads(header), json.loads(first)
-        differing = [name for name in own if own[name] != other[name]]
-        found = {json.loads(line)["row"]: line for line in lines}
+        required, present = json.loads(header), json.loads(first)
+        differing = [name for name in required if required[name] != present[name]]
+        complete = {json.loads(line)["row"]: line for line in lines}
     except (ValueError, KeyError, TypeError):
-        differing, found = ["contents"], {}
+        differing, complete = ["contents"], {}
     if differing:
         what = f"has the rows of another sweep (other {', '.join(differing)}): name another file, or delete it"
         raise InputError(f"--to {shown(str(file))} {what}")
     write_whole(file, b"".join((header, *lines)).decode(), "--to")
-    return found
+    return complete
 
 
 def _combinations(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
@@ -191,8 +191,8 @@ def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: Axes) -> 
         return
     keys = [key.rpartition(".")[2] for key in second[0][0].split(",")] if second else []
     names = [f"{', '.join(keys)} = {_label(value)}" for value in second[0][1]] if second else [""]
-    for name, own in zip(names, values.reshape(len(places[0]), -1).T, strict=True):
-        ax.plot(places[0], own, "-o", label=name)
+    for name, line in zip(names, values.reshape(len(places[0]), -1).T, strict=True):
+        ax.plot(places[0], line, "-o", label=name)
     if np.nanmin(values) > 0.0 and np.nanmax(values) > WIDE * np.nanmin(values):
         ax.set_yscale("log")
     ax.set_ylabel(label)
@@ -200,19 +200,19 @@ def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: Axes) -> 
         ax.legend()
 
 
-def _rising(given: list[Any]) -> bool:
-    return all(map(_number, given)) and sorted(set(given)) == given
+def _rising(values: list[Any]) -> bool:
+    return all(map(_number, values)) and sorted(set(values)) == values
 
 
-def _place(ax: Axes, axis: str, key: str, given: list[Any]) -> list[Any]:
+def _place(ax: Axes, axis: str, key: str, values: list[Any]) -> list[Any]:
     """Label and scale an axis for a list; the coordinates of its values."""
     getattr(ax, f"set_{axis}label")(key)
-    if not _rising(given):
-        getattr(ax, f"set_{axis}ticks")(range(len(given)), [_label(value) for value in given])
-        return list(range(len(given)))
-    if given[0] > 0.0 and given[-1] / given[0] > WIDE:
+    if not _rising(values):
+        getattr(ax, f"set_{axis}ticks")(range(len(values)), [_label(value) for value in values])
+        return list(range(len(values)))
+    if values[0] > 0.0 and values[-1] / values[0] > WIDE:
         getattr(ax, f"set_{axis}scale")("log")
-    return given
+    return values
 
 
 def _label(value: Any) -> str:

@@ -38,6 +38,11 @@ class Row:
     """Claims of the scene that agree."""
     margins: list[Margin] = field(default_factory=list)
 
+    @property
+    def numbers(self) -> list[Any]:
+        """The values; None for all where one is undefined."""
+        return self.values if self.reason is None else [None] * len(self.values)
+
 
 @dataclass(frozen=True)
 class Variants:
