@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 from threading import Thread
+from time import sleep
 from typing import Any, TypeVar
 
 from verify.blas import one_blas_thread
@@ -22,6 +23,8 @@ CLIENT: ContextVar[Any] = ContextVar("client", default=None)
 """Client of the cluster inside `with cluster(...)`."""
 PATIENCE = 30.0
 """Time to reach a scheduler and its first worker, s."""
+ORDER = 0.2
+"""Time after the death of a worker, s, in which a Ctrl-C that ended it reaches this process too, and is the error."""
 
 
 @contextmanager
@@ -151,6 +154,7 @@ def completed(
             yield futures[future], future.result()
     except Exception as error:
         if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
+            sleep(ORDER)
             remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file continues from it"
             raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise

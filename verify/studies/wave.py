@@ -132,9 +132,8 @@ def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
         columns |= {Column(f"axis ratio{suffix}", format="+.5f"): read(where, "axis_ratio")}
         return columns | {si(f"crest speed{suffix}", "m/s", "+.5g"): read(where, "crest_speed")}
 
-    columns: dict[Column, Any] = {Column("model"): lambda row: MODELS[row["model"]].title, Column("N"): "N"} | figures(
-        "drive"
-    )
+    columns: dict[Column, Any] = {Column("model"): lambda row: MODELS[row["model"]].title, Column("N"): "N"}
+    columns |= figures("drive")
     if better := any(row["best"] for row in rows):
         columns |= {Column("best frequency", "Hz", ".2f"): read("best", "frequency_hz")} | figures("best", " there")
     notes = WAVES + " Right: at its own frequency of least reflection." * better, imposed
