@@ -22,7 +22,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     from verify.quantities.base import QUANTITIES, Estimate, as_plain, as_text, evaluate, parse_arguments
     from verify.report.result import Result
     from verify.scene.load import load_scene
-    from verify.studies.margins import quantity_margins
+    from verify.studies.tables import quantity_margins
 
     given = parse_arguments(quantity, arguments)
     loaded = load_scene(scene, overrides)

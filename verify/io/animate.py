@@ -42,15 +42,11 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
     length, up = scene.beam.length, HEIGHT * scene.beam.length
     heights = up / largest * deflection
 
-    def slider_at(frame: int) -> tuple[float, float]:
-        place = float(slider["slider_position"][frame])
-        return place, float(np.interp(place, data.x, heights[frame])) + 0.25 * up
-
     form, color = ("-o", MODEL_COLORS["segment"]) if data.links else ("-", MODEL_COLORS["fem"])
-    style = {"color": color, "linewidth": 3.0, "markersize": 3.5}
-    lines: list[MovingLine] = [(lambda frame: (data.x, heights[frame]), form, style)]
-    if "slider_position" in slider:
-        lines.append((slider_at, "s", {"color": MODEL_COLORS["fem"], "markersize": 11}))
+    lines: list[MovingLine] = [(data.x, heights, form, {"color": color, "linewidth": 3.0, "markersize": 3.5})]
+    if (places := slider.get("slider_position")) is not None:
+        tops = [np.interp(x, data.x, w) + 0.25 * up for x, w in zip(places, heights, strict=True)]
+        lines.append((places[:, None], np.array(tops)[:, None], "s", {"color": MODEL_COLORS["fem"], "markersize": 11}))
 
     def animate(ax: "Axes") -> Any:
         """The beam at its supports, forces as arrows, the slider on the surface."""
@@ -66,7 +62,7 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
         ax.set_axis_off()
         magnified = "" if data.what == "modes" else f"; deflection magnified {up / largest:.3g} times"
         ax.set_title(f"{data.title}{magnified}", fontsize=9)
-        return animation(ax, lines, clock, lambda frame: labels[frame]), frames
+        return animation(ax, lines, clock, labels), frames
 
     drawn = movie_frames(Movie(data.what, data.title, "", animate), 110.0, INK, "white")
     first, *others = [image.convert("RGB") for image in drawn]

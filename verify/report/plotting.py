@@ -25,6 +25,8 @@ MARKERS = "osD^vPX*"
 INK, GRID, PAPER, EVEN = "#010203", "#d0d4da", "#fefdfc", "#7f8388"
 """Text and axes, grid, background of legends; ink of movies, which reads on light and on dark."""
 VARIABLES = {INK: "currentColor", "#000000": "currentColor", GRID: f"var(--grid, {GRID})", PAPER: "var(--card, #fff)"}
+MovingLine: TypeAlias = tuple[Any, Any, str, Mapping[str, Any]]
+"""x (points,) or (frames, points), y (frames, points), line and marker, further settings."""
 NO_METADATA = {"Creator": None, "Date": None, "Format": None, "Type": None}
 
 
@@ -151,22 +153,14 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     return svg, small.getvalue()
 
 
-MovingLine: TypeAlias = tuple[Callable[[int], tuple[Any, Any]], str, Mapping[str, Any]]
-"""x and y of a frame, line and marker, further settings."""
-
-
-def animation(
-    ax: "Axes", lines: Sequence[MovingLine], clock: Any, text: Callable[[int], str], scale: Sequence[float] = (1, 1)
-) -> Callable[[int], list[Any]]:
-    """What moves lines on prepared axes to a frame, x and y scaled, and shows its text in the artist `clock`."""
-    from numpy import atleast_1d
-
-    artists = [ax.plot([], [], form, **style)[0] for _, form, style in lines]
+def animation(ax: "Axes", lines: Sequence[MovingLine], clock: Any, texts: Sequence[str]) -> Callable[[int], list[Any]]:
+    """What moves lines on prepared axes to a frame and shows its text in the artist `clock`, for `Movie.animate`."""
+    artists = [ax.plot([], [], form, **style)[0] for *_, form, style in lines]
 
     def update(frame: int) -> list[Any]:
-        for artist, (at, *_) in zip(artists, lines, strict=True):
-            artist.set_data(*(factor * atleast_1d(values) for factor, values in zip(scale, at(frame), strict=True)))
-        clock.set_text(text(frame))
+        for artist, (x, y, *_) in zip(artists, lines, strict=True):
+            artist.set_data(x[frame] if x.ndim > 1 else x, y[frame])
+        clock.set_text(texts[frame])
         return [*artists, clock]
 
     return update

@@ -33,11 +33,6 @@ def unit_symbol(unit: str) -> str:
     return "" if unit == "1" else unit
 
 
-def labelled(name: str, unit: str) -> str:
-    """'mode.frequency, Hz': a quantity as the label of an axis."""
-    return f"{name}, {unit_symbol(unit)}".rstrip(", ")
-
-
 def table(title: str, items: Iterable[Any], columns: Columns, *notes: str) -> Table:
     """A row of each item; every column with the key of its value in an item, or the function that reads it."""
     rows = [[item[read] if isinstance(read, str) else read(item) for read in columns.values()] for item in items]
@@ -83,7 +78,7 @@ def plot_lines(ax: Axes, lines: Iterable[Line], x: Axis, y: Axis) -> None:
 
 
 def beam_movie(
-    lines: Sequence[MovingLine], frames: Iterable[int], length: float, height: float, text: Callable[[int], str]
+    lines: Sequence[MovingLine], length: float, height: float, texts: Sequence[str]
 ) -> Callable[[Axes], Any]:
     """What `Movie.animate` is, of lines in SI units over a beam of this length up to this height, m."""
     along, up = unit_of(length), unit_of(height)
@@ -93,8 +88,9 @@ def beam_movie(
         ax.set(xlim=(along.factor * left, along.factor * right), ylim=(-top, top))
         ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}")
         clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
-        update = animation(ax, lines, clock, text, (along.factor, up.factor))
+        scaled = [(along.factor * x, up.factor * y, *style) for x, y, *style in lines]
+        update = animation(ax, scaled, clock, texts)
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
-        return update, frames
+        return update, range(len(texts))
 
     return animate

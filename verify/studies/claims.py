@@ -45,7 +45,9 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             row |= {"computed": None, "unit": "", "agrees": None, "exact": None, "exact_agrees": None}
             row["source"] = f"{claim.source} ({READ[claim.read]})"
             try:
-                row |= {"unit": unit_of(claim), "computed": computed(claim, scene, cache)}
+                quantity = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity")
+                row["unit"] = unit_symbol(quantity.unit_of(claim.arguments))
+                row["computed"] = computed(claim, scene, cache)
                 row["agrees"] = claim.agrees(row["computed"])
                 if of_scene(claim):
                     row["exact"] = computed(claim, scene, cache, model="analytic", count=None)
@@ -65,11 +67,6 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 def of_scene(claim: Claim) -> bool:
     """Whether it is about the scene's own slider: a quantity of the slider without arguments."""
     return claim.quantity.startswith("slider.") and not claim.arguments
-
-
-def unit_of(claim: Claim) -> str:
-    """Unit of its quantity, empty for a ratio. Raises InputError for an unknown quantity."""
-    return unit_symbol(QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit_of(claim.arguments))
 
 
 def computed(claim: Claim, scene: Scene, cache: SolutionCache, **other: Any) -> float:

@@ -46,6 +46,8 @@ ERRORS |= {percent("extrapolated", "+.3g"): "extrapolated_error", si("solve time
 BOUNDS = {Column("mode"): "mode", Column("N"): "N", Column("lower", "Hz", ".8g"): "lower_hz"}
 BOUNDS |= {Column("upper", "Hz", ".8g"): "upper_hz", percent("width", ".4g"): "width"}
 BOUNDS |= {percent("error of the mean"): "mean_error"}
+UNLIKE = "where links of unlike I and of unlike material or length (E/l) meet"
+ALIKE = "nowhere, no links meet that are unlike in I and in material or length (E/l)"
 CAPTION = (
     "Filled markers: order from the size before in the asymptotic range. Dashed: slopes of the theoretical orders. The "
     "mean, of order 6, is drawn where segments and Hermite elements are of order 4."
@@ -131,17 +133,13 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     def _printed_joints(self, beam: Beam) -> list[str]:
         """A note on where joints as printed differ from those in series; none without printed joints."""
         notes: dict[str, None] = {}
-        for settings in self.combinations:
-            if ("joints", "printed") in settings:
-                parts = divide(beam, max(self.counts), float(dict(settings).get("grading", 1.0)))
-                figures: Any = parts.second_moments, parts.moduli / parts.lengths
-                changes = [abs(np.diff(np.log(v))) > 1e-9 for v in figures]
-                places = parts.unit * np.cumsum(parts.lengths)[:-1][changes[0] & changes[1]]
-                where = "nowhere, no links meet that are unlike in I and in material or length (E/l)"
-                if len(places):
-                    where = f"at x = {', '.join(f'{x:.4g}' for x in places)} m alone, "
-                    where += "where links of unlike I and of unlike material or length (E/l) meet"
-                notes[f"Joints printed, N = {max(self.counts)}: they differ from joints in series {where}."] = None
+        for settings in (settings for settings in self.combinations if ("joints", "printed") in settings):
+            parts = divide(beam, max(self.counts), float(dict(settings).get("grading", 1.0)))
+            figures: Any = parts.second_moments, parts.moduli / parts.lengths
+            changes = [abs(np.diff(np.log(v))) > 1e-9 for v in figures]
+            places = parts.unit * np.cumsum(parts.lengths)[:-1][changes[0] & changes[1]]
+            where = f"at x = {', '.join(f'{x:.4g}' for x in places)} m alone, {UNLIKE}" if len(places) else ALIKE
+            notes[f"Joints printed, N = {max(self.counts)}: they differ from joints in series {where}."] = None
         return list(notes)
 
     def _bounds(self, cache: SolutionCache) -> tuple[list[Row], list[str]]:

@@ -1,7 +1,7 @@
 """Parameters of friction or of the beam, identified from data of a scene or from synthetic data, with intervals."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 import numpy as np
@@ -11,13 +11,12 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
 from verify.errors import InputError
+from verify.identify import beam, friction
+from verify.identify.fit import Fit, Model, fit
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import line_chart, plot_lines
 from verify.validation import check_number, unit
-
-if TYPE_CHECKING:
-    from verify.identify.fit import Fit, Model
 
 NOTES = (
     "Intervals of 95 %: lower and upper by Fisher information and Student's t (normal distribution for a known noise), "
@@ -83,10 +82,8 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many")
         self.model_of(scene, np.array([1.0])).values({}, self.parameters)
 
-    def model_of(self, scene: Scene, x: Array, phase: bool = True) -> "Model":
+    def model_of(self, scene: Scene, x: Array, phase: bool = True) -> Model:
         """The model at x (n,). Raises InputError."""
-        from verify.identify import beam, friction
-
         names = (*self.parameters, *self.start, *(self.synthetic.true if self.synthetic else ()))
         if self.what == "frequencies":
             return beam.frequencies(scene.beam, names, x)
@@ -114,7 +111,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         return friction.run(scene.slider, names, x, simulated)
 
-    def data(self, scene: Scene) -> "tuple[Model, Array]":
+    def data(self, scene: Scene) -> tuple[Model, Array]:
         """(model, y of the model as measured). Raises InputError."""
         if (synthetic := self.synthetic) is not None:
             (low, high), modes = synthetic.span, self.what == "frequencies"
@@ -144,10 +141,8 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         y = np.log(y / (2.0 * np.pi * x) ** order) if model.logs else y
         return model, y if phase is None else np.concatenate([y, phase - 0.5 * np.pi * order])
 
-    def fitted(self, scene: Scene, cache: SolutionCache) -> "tuple[Model, Array, Fit]":
+    def fitted(self, scene: Scene, cache: SolutionCache) -> tuple[Model, Array, Fit]:
         """(model, data, fit), computed once. Raises InputError."""
-        from verify.identify.fit import fit
-
         key: Any = ("identify", msgspec.json.encode(self), scene.beam, scene.slider, scene.drive)
         if key not in cache.motors:
             model, data = self.data(scene)
@@ -187,7 +182,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             margins=margins,
         )
 
-    def _figures(self, model: "Model", data: Array, result: "Fit") -> list[Figure]:
+    def _figures(self, model: Model, data: Array, result: Fit) -> list[Figure]:
         x, n, points = model.x, len(model.x), {"linestyle": "None", "marker": "."}
         shown = [np.exp(values[:n]) if model.logs else values[:n] for values in (data, result.curve)]
         residuals = result.residuals.reshape(model.channels, -1) / result.noise

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of
+from verify.dynamics.arguments import Keep, Step
 from verify.errors import InputError
 from verify.formatting import unit_over
 from verify.linear.positions import SLACK
@@ -21,7 +22,7 @@ from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import Line, beam_movie, line_chart, model_style, percent, si, sized_title, table
-from verify.studies.margins import reduction_margins
+from verify.studies.tables import reduction_margins
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
@@ -90,7 +91,6 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Simulate the slider on every model. Raises InputError, also without a slider."""
         from verify.analytic_modes import check_in_time
-        from verify.dynamics.arguments import Keep, Step
         from verify.dynamics.simulate import simulate
 
         slider = scene.slider
@@ -139,7 +139,6 @@ def readings(scene: Scene) -> Table:
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
-    from verify.dynamics.arguments import Keep
     from verify.dynamics.simulate import simulate
 
     assert scene.slider is not None
@@ -218,22 +217,16 @@ def _table(runs: "dict[str, Run]") -> Table:
 
 def _movie(run: "Run") -> Callable[[Axes], Any]:
     """The links with the slider on them, and the friction on it as a bar."""
-    frames = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int)).tolist()
+    kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
     time, length = unit_over([float(run.times[-1])], "s"), float(run.points[-1])
-    friction = run.friction / (float(abs(run.friction).max()) or 1.0)
-
-    def slider_at(k: int) -> tuple[float, float]:
-        return run.position[k], float(np.interp(run.position[k], run.points, run.deflection[k]))
-
-    def friction_at(k: int) -> tuple[list[float], list[float]]:
-        x, height = slider_at(k)
-        return [x, x + 0.08 * length * friction[k]], [height, height]
-
-    links = {"markersize": 3, "label": _title(run)} | model_style(run.model)
+    place, deflection = run.position[kept, None], run.deflection[kept]
+    height = np.array([np.interp(x, run.points, w) for x, w in zip(place, deflection, strict=True)])
+    bar = 0.08 * length * run.friction[kept, None] / (float(abs(run.friction).max()) or 1.0)
+    friction = {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}
     lines: list[MovingLine] = [
-        (lambda k: (run.points, run.deflection[k]), "-o", links),
-        (friction_at, "-", {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}),
-        (slider_at, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
+        (run.points, deflection, "-o", {"markersize": 3, "label": _title(run)} | model_style(run.model)),
+        (np.hstack([place, place + bar]), np.hstack([height, height]), "-", friction),
+        (place, height, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
     ]
-    height = float(abs(run.deflection).max())
-    return beam_movie(lines, frames, length, height, lambda k: f"{time.factor * run.times[k]:.3f} {time.name}")
+    texts = [f"{time.factor * t:.3f} {time.name}" for t in run.times[kept]]
+    return beam_movie(lines, length, float(abs(run.deflection).max()), texts)

@@ -20,8 +20,8 @@ from verify.quantities.options import ModelName
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Progress, Scene, Study
 from verify.studies.charts import Columns, Line, line_chart, model_style, percent, si, sized_title, table
-from verify.studies.margins import path_margins, reduction_margins
 from verify.studies.motion import Damping, check_driven, check_start, readings
+from verify.studies.tables import path_margins, reduction_margins
 
 if TYPE_CHECKING:
     from verify.motor.curves import TimeConstant, Transient
@@ -102,14 +102,13 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields, number = list[Field](), iter(range(1, self.steps + 1))
+        settings: dict[str, Any] = {name: getattr(self, name) for name in ("modal_damping", "steps_per_period")}
+
+        def step(what: str) -> None:
+            progress(f"{next(number)} of {self.steps}: {what}")
+
         for model in self.models:
-            case = MotorOptions(
-                model=model,
-                count=n if MODELS[model].sized else None,
-                modal_damping=self.modal_damping,
-                steps_per_period=self.steps_per_period,
-            ).case(scene)
-            step = lambda what: progress(f"{next(number)} of {self.steps}: {what}")  # noqa: E731
+            case = MotorOptions(model=model, count=n if MODELS[model].sized else None, **settings).case(scene)
             fields.append(self._field(case, fields[0].curve if fields else [], cache, step))
         first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
         margins += path_margins(first.case.model, first.case.count, scene, cache) + reduction_margins(scene)

@@ -26,9 +26,9 @@ from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.model import Limits
-from verify.studies.base import Axes, Progress, Scene
-from verify.studies.charts import labelled, unit_symbol
-from verify.studies.tables import OfQuantity, Row, Variants
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import unit_symbol
+from verify.studies.tables import Row, Variants
 
 Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
 STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
@@ -84,11 +84,13 @@ class Limit(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return [sign * (value - limit) / (abs(limit) or 1.0) for limit, sign in sides if limit is not None]
 
 
-class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The least or largest value of a quantity over keys of the scene."""
 
     name, title, devices = "optimise", "Optimum", True
 
+    quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
+    arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
     goal: Annotated[Literal["minimise", "maximise"], Meta(description="What to do with it.")] = "minimise"
     variable: Annotated[tuple[Variable, ...], Meta(min_length=1, description="What varies.")]
     limit: Annotated[tuple[Limit, ...], Meta(description="Limits of other quantities.")] = ()
@@ -146,7 +148,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
                 finer.run("COBYQA")
         values = self.values(finer.best)
         stages = [coarse.rows[begin], coarse.rows[coarse.best], finer.rows[coarse.best], finer.rows[finer.best]]
-        start, _, refined, last = (row.numbers[0] for row in stages)
+        start, _, refined, last = (row.values[0] for row in stages)
         models = [label if label and finer is not coarse else "the same" for label in labels]
         shown = [self._variables(begin, coarse.best, finer.best), self._objective(stages, models)]
         data = {"optimum": values, "points": len(coarse.rows) + (finer is not coarse) * len(finer.rows)}
@@ -187,7 +189,7 @@ class Optimise(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True
         rows = []
         names, limits = [self.quantity, *(limit.quantity for limit in self.limit)], [None, *self.limit]
         for i, (name, limit, model) in enumerate(zip(names, limits, models, strict=True)):
-            sizes, active = [row.numbers[i] for row in stages], None
+            sizes, active = [row.values[i] for row in stages], None
             if limit and sizes[-1] is not None:
                 active = min(map(abs, limit.distances(sizes[-1]))) < ACTIVE
             role = limit.limits if limit else f"{self.goal}d"
@@ -306,7 +308,7 @@ class Search:
         if min(values) > 0.0 and max(values) > 30.0 * min(values):
             ax.set_yscale("log")
         quantity = self.study.quantity
-        ax.set(xlabel="point", ylabel=labelled(quantity, QUANTITIES[quantity].unit))
+        ax.set(xlabel="point", ylabel=f"{quantity}, {unit_symbol(QUANTITIES[quantity].unit)}".rstrip(", "))
         ax.legend()
 
 

@@ -18,9 +18,9 @@ from verify.errors import InputError
 from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
-from verify.studies.base import Axes, Progress, Scene
+from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import unit_symbol
-from verify.studies.tables import OfQuantity, Variants
+from verify.studies.tables import Variants
 
 CONFIDENCE = 0.95
 CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling."
@@ -67,11 +67,13 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return norm(median, self.sd) if self.distribution == "normal" else lognorm(self.sd, scale=median)
 
 
-class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How much of the variance of a quantity each uncertain input causes."""
 
     name, title, devices = "sensitivity", "Shares of uncertain inputs", True
 
+    quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
+    arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
     logarithm: Annotated[bool, Meta(description="Shares of the logarithm of its size.")] = False
     input: Annotated[tuple[Input, ...], Meta(min_length=1, description="What is uncertain.")]
     n: Annotated[int, Meta(ge=16, description="A power of two; n (inputs + 2) values are computed.")] = 256
@@ -108,13 +110,12 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
         what = f"ln |{self.quantity}|" if self.logarithm else self.quantity
         rivals = [key for i, key in enumerate(keys) if i != largest and total[2, i] > total[1, largest]]
         unclear = f" (its interval overlaps that of {', '.join(rivals)}: no rank)" if rivals else ""
-        data = {"points": len(values), "mean": both.mean(), "sd": both.std(), "sum of first order": first[0].sum()}
         return Result(
             summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}; "
             f"{keys[largest]} has the largest share in its variance, {total[0, largest]:.3f}{unclear}.",
             tables=[Table(f"Shares in the variance of {what}", columns, rows, NOTES)],
             figures=[Figure("sensitivity-shares", f"Shares in the variance of {what}", CAPTION, partial(_draw, rows))],
-            data=data,
+            data={"points": len(values), "mean": both.mean(), "sd": both.std(), "sum of first order": first[0].sum()},
             margins=variants.margins({}),
         )
 
@@ -157,9 +158,9 @@ class Sensitivity(OfQuantity, frozen=True, kw_only=True, forbid_unknown_fields=T
         # the bootstrap of `SobolResult` has no seed
         options: Any = {"confidence_level": CONFIDENCE, "method": "percentile", "vectorized": True, "rng": self.seed}
         ends = bootstrap([np.arange(self.n)], estimates, n_resamples=999, batch=32, **options).confidence_interval
-        first, total = np.atleast_1d(shares.first_order), np.atleast_1d(shares.total_order)
-        low, high = ends.low, ends.high
-        return np.array(values), np.stack([first, low[0], high[0]]), np.stack([total, low[1], high[1]])
+        orders = np.atleast_2d(shares.first_order, shares.total_order)
+        first, total = (np.vstack([share, ends.low[i], ends.high[i]]) for i, share in enumerate(orders))
+        return np.array(values), first, total
 
 
 def _draw(rows: list[Any], ax: Axes) -> None:

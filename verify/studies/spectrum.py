@@ -127,10 +127,11 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: Axes) -> None:
     """Sizes of the errors over mode number, beside what other theories change."""
     colors = variant_colors(tuple(errors))
-    lines: list[tuple[str, str, dict[str, Any], list[float | None]]] = []
-    lines += [(v.title, "-o", {"color": colors[v], "markersize": 3.5}, series) for v, series in errors.items()]
+    lines: list[Any] = [
+        (v.title, "-o", {"color": colors[v], "markersize": 3.5}, series) for v, series in errors.items()
+    ]
     for name, changes in theories.items():
-        lines.append((f"{theory_name(name)} theory", "--", {"color": THEORY_COLORS[name]}, list(changes)))
+        lines.append((f"{theory_name(name)} theory", "--", {"color": THEORY_COLORS[name]}, changes))
     for label, form, style, series in lines:
         sizes = [float("nan") if value is None else 100 * abs(value) for value in series]
         ax.plot(range(1, len(sizes) + 1), sizes, form, label=label, **style)

@@ -27,7 +27,7 @@ from verify.parallel import completed, versions, workers
 from verify.quantities.base import QUANTITIES, as_text
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Axes, Progress, Scene, Study
-from verify.studies.charts import labelled, unit_symbol
+from verify.studies.charts import unit_symbol
 from verify.studies.tables import Variants
 
 MOST = 100_000  # combinations, each of which is a row in memory
@@ -52,14 +52,12 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     )
     claims: Annotated[bool, Meta(description="Count the scene's claims that agree in each combination.")] = False
 
-    def variants(self, scene: Scene) -> Variants:
-        """The quantities on the scene, with those of the fixed arguments that each has."""
-        return Variants.of(scene, [(name, {}) for name in self.quantities])
-
     def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
         combination = _combinations(self.over)[0]
-        self.variants(scene).check_keys((*self.arguments, *combination), "sweep")
+        Variants.of(scene, [(name, {}) for name in self.quantities]).check_keys(
+            (*self.arguments, *combination), "sweep"
+        )
         if self.claims and not scene.claim:
             raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
 
@@ -72,7 +70,8 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         or argument, and for a file of another sweep; a combination that raises it is a row with the reason.
         """
         self.check(scene)
-        variants, combinations = self.variants(scene), _combinations(self.over)
+        variants = Variants.of(scene, [(name, {}) for name in self.quantities])
+        combinations = _combinations(self.over)
         header = _header(self, variants.tables) if file else b""
         lines = _lines(file, header) if file else {}
         todo = [i for i in range(len(combinations)) if i not in lines]
@@ -182,7 +181,7 @@ def _draw(study: Sweep, rows: list[dict[str, Any]], quantity: Any, ax: Axes) -> 
     values = np.array([row[quantity.name] if _number(row[quantity.name]) else np.nan for row in rows], dtype=float)
     first, *second = study.over.items()
     places = [_place(ax, "x", *first)]
-    label = labelled(quantity.name, quantity.unit)
+    label = f"{quantity.name}, {unit_symbol(quantity.unit)}".rstrip(", ")
     if second and _rising(second[0][1]):
         places.append(_place(ax, "y", *second[0]))
         mesh = ax.pcolormesh(*places, values.reshape(len(places[0]), -1).T, shading="nearest", cmap="viridis")

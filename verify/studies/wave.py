@@ -1,7 +1,6 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
@@ -10,7 +9,6 @@ from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
-from verify.arrays import Array
 from verify.errors import InputError, WindowError
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
@@ -83,7 +81,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         counts = self.counts or (n, 2 * n, 4 * n)
         sizes = [(EXACT, None), *((model, count) for model in models for count in counts)]
         rows = [_waves(exact, model, count, cache, progress) for model, count in sizes]
-        fields = {m: driven(exact if m == EXACT else _on(exact, m, n), cache) for m in (EXACT, *models)}
+        cases = [exact, *(replace(exact, model=MODELS[model].build(exact.beam, n)) for model in models)]
+        fields = {model: driven(case, cache) for model, case in zip((EXACT, *models), cases, strict=True)}
         other = replace(exact, kind="displacement" if exact.kind == "force" and not exact.shunts else "force")
         direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
         against, best = measured(other, cache), best_drive(exact, direction=direction)
@@ -103,7 +102,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
             f"wave towards {end[against.waves.direction]}."
         )
-        ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
         return Result(
             summary=f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
             f"{hertz:g} Hz in [L/4, 3L/4]: {ratios}.",
@@ -111,14 +109,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             figures=[_envelopes(fields, marked(f"Envelope of the wave, N = {n}", margins)), _ellipses(fields[EXACT])],
             movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
-            data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
+            data={"rows": rows, "other_drive_standing_wave_ratio": ratio}
+            | {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg},
             margins=margins,
         )
-
-
-def _on(case: "DrivenCase", model: str, count: int | None) -> "DrivenCase":
-    """The same drive on another model of the beam."""
-    return replace(case, model=MODELS[model].build(case.beam, count))
 
 
 def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
@@ -145,7 +139,7 @@ def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCa
     from verify.travelling_wave import best_frequency
 
     progress(name := sized_title(model, count))
-    case = _on(exact, model, count)
+    case = replace(exact, model=MODELS[model].build(exact.beam, count))
     row = {"name": name, "model": model, "N": count, "drive": _operation(case, cache), "best": None, "note": ""}
     try:
         return row | {"best": _operation(replace(case, frequency_hz=best_frequency(case)), cache)}
@@ -223,11 +217,6 @@ def _movie(fields: Fields, count: int) -> Callable[[Axes], Any]:
         largest = max(largest, float(abs(wave).max()))
         form = {"analytic": "-", "segment": "-o"}.get(model, "x")
         style = {"markersize": 3.0, "label": MODELS[model].title} | model_style(model)
-        lines.append((partial(_frame, x, (wave * turn).real), form, style))
-    surface = {"color": SURFACE, "label": "surface points"}
-    lines.append((lambda k: (x_surface[:, k], height[:, k]), "o", surface))
-    return beam_movie(lines, range(FRAMES), length, largest, lambda k: "")
-
-
-def _frame(x: Array, heights: Array, k: int) -> tuple[Array, Array]:
-    return x, heights[k]
+        lines.append((x, (wave * turn).real, form, style))
+    lines.append((x_surface.T, height.T, "o", {"color": SURFACE, "label": "surface points"}))
+    return beam_movie(lines, length, largest, [""] * FRAMES)
