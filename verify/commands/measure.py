@@ -23,7 +23,7 @@ def measure(scene: str, quantity: str, arguments: tuple[str, ...], overrides: tu
     from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
     from verify.report.result import Result
     from verify.scene.load import load_scene
-    from verify.studies.sweep import quantity_margins
+    from verify.studies.tables import quantity_margins
 
     given = parse_arguments(quantity, arguments)
     loaded = load_scene(scene, overrides)
