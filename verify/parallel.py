@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 from threading import Thread
+from time import sleep
 from typing import Any, TypeVar
 
 from verify.blas import one_blas_thread
@@ -22,6 +23,8 @@ CLIENT: ContextVar[Any] = ContextVar("client", default=None)
 """Client of the cluster inside `with cluster(...)`."""
 PATIENCE = 30.0
 """Time to reach a scheduler and its first worker, s."""
+ORDER = 0.2
+"""Time after the death of a worker, s, in which a Ctrl-C that ended it reaches this process too, and is the error."""
 
 
 @contextmanager
@@ -43,17 +46,19 @@ def cluster(where: str | int) -> Iterator[None]:
         try:
             if isinstance(where, int):
                 remedy = "in a script of your own call it below if __name__ == '__main__'"
-                own: Any = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
+                options: Any = {"threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
                 with _interrupts_blocked():  # also in the workers, for ever: Ctrl-C is this process's alone
-                    address = stack.enter_context(LocalCluster(n_workers=where, **own))
+                    address = stack.enter_context(LocalCluster(n_workers=where, **options))
             client = stack.enter_context(Client(address, timeout=PATIENCE, set_as_default=False))
             client.wait_for_workers(1, timeout=PATIENCE)
             theirs = client.run(versions)
         except (OSError, ValueError, ImportError, RuntimeError) as error:
             raise InputError(f"cluster = {shown(where)} has no usable worker ({error}): {remedy}") from None
-        for worker, found in theirs.items():
-            if found != versions():
-                raise InputError(f"worker {worker} has {found}, this machine {versions()}: install the same versions")
+        for worker, installed in theirs.items():
+            if installed != versions():
+                raise InputError(
+                    f"worker {worker} has {installed}, this machine {versions()}: install the same versions"
+                )
         token = CLIENT.set(client)
         try:
             yield
@@ -136,19 +141,20 @@ def completed(
     error of the first item that fails; and InputError where a process dies.
     """
     todo = list(items)
-    own = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
-    for i, item in enumerate(todo[:own]):
+    here = len(todo) if executor is None else int(first_here and CLIENT.get() is None)
+    for i, item in enumerate(todo[:here]):
         yield i, _result(function, item)
-    if executor is None or own == len(todo):
+    if executor is None or here == len(todo):
         return
     from concurrent.futures import as_completed
 
-    futures = {executor.submit(_result, function, item): i for i, item in enumerate(todo[own:], own)}
+    futures = {executor.submit(_result, function, item): i for i, item in enumerate(todo[here:], here)}
     try:
         for future in as_completed(futures):
             yield futures[future], future.result()
     except Exception as error:
         if isinstance(error, BrokenExecutor | CancelledError) or type(error).__name__ == "KilledWorker":
+            sleep(ORDER)
             remedy = f"run again with fewer processes ({VARIABLE}), a sweep --to a file continues from it"
             raise InputError(f"a worker process was killed, by the system where memory is short: {remedy}") from None
         raise

@@ -26,7 +26,7 @@ from verify.quantities.waves import FieldOptions, driven_case
 from verify.scene.load import load_scene, scene_from
 from verify.studies.motor import Motor
 from verify.studies.spectrum import Spectrum
-from verify.studies.sweep import figure_margins, quantity_margins
+from verify.studies.tables import figure_margins, quantity_margins
 from verify.waves.driven_case import driven
 
 PAPER = load_scene("paper").beam

@@ -8,7 +8,7 @@ from verify.estimate import Estimate, as_plain, as_text
 from verify.quantities.base import QUANTITIES, evaluate, parse_arguments
 from verify.report.result import Result
 from verify.scene.load import load_scene, tables_read
-from verify.studies.sweep import quantity_margins
+from verify.studies.tables import quantity_margins
 
 
 @click.command(cls=shared.BeamCommand)

@@ -9,7 +9,7 @@ from verify.errors import InputError
 from verify.files import whole
 from verify.formatting import unit_of
 from verify.io.data import Dataset, Request
-from verify.report.plotting import INK, MODEL_COLORS, movie_frames
+from verify.report.plotting import INK, MODEL_COLORS, MovingLine, animation, movie_frames
 from verify.report.result import Movie
 
 if TYPE_CHECKING:
@@ -39,9 +39,17 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
     if kind == "png":
         frames = [int(np.argmax(abs(deflection).max(axis=1)))]
 
+    length, up = scene.beam.length, HEIGHT * scene.beam.length
+    heights = up / largest * deflection
+
+    form, color = ("-o", MODEL_COLORS["segment"]) if data.links else ("-", MODEL_COLORS["fem"])
+    lines: list[MovingLine] = [(data.x, heights, form, {"color": color, "linewidth": 3.0, "markersize": 3.5})]
+    if (places := slider.get("slider_position")) is not None:
+        tops = [np.interp(x, data.x, w) + 0.25 * up for x, w in zip(places, heights, strict=True)]
+        lines.append((places[:, None], np.array(tops)[:, None], "s", {"color": MODEL_COLORS["fem"], "markersize": 11}))
+
     def animate(ax: "Axes") -> Any:
         """The beam at its supports, forces as arrows, the slider on the surface."""
-        length, up = scene.beam.length, HEIGHT * scene.beam.length
         ax.plot([0.0, length], [0.0, 0.0], color="#b0b6be", linewidth=0.8)
         for x, support in zip((0.0, length), scene.beam.supports, strict=True):
             y = -0.3 * up if support == "pinned" else 0.0
@@ -49,25 +57,12 @@ def write_picture(scene: "Scene", data: Dataset, path: Path, request: Request) -
         for force in scene.forces if data.what != "modes" else ():
             arrow: Any = {"color": "#cc3f76", "width": 1.0}
             ax.annotate("", (force.position, 1.2 * up), (force.position, 2.1 * up), arrowprops=arrow)
-        style, color = ("-o", MODEL_COLORS["segment"]) if data.links else ("-", MODEL_COLORS["fem"])
-        (line,) = ax.plot([], [], style, color=color, linewidth=3.0, markersize=3.5)
-        (block,) = ax.plot([], [], "s", color=MODEL_COLORS["fem"], markersize=11)
-        text = ax.text(0.5, 0.97, "", transform=ax.transAxes, ha="center", va="top")
+        clock = ax.text(0.5, 0.97, "", transform=ax.transAxes, ha="center", va="top")
         ax.set(xlim=(-0.04 * length, 1.04 * length), ylim=(-2.4 * up, 2.6 * up))
         ax.set_axis_off()
         magnified = "" if data.what == "modes" else f"; deflection magnified {up / largest:.3g} times"
         ax.set_title(f"{data.title}{magnified}", fontsize=9)
-
-        def update(frame: int) -> list[Any]:
-            heights = up / largest * deflection[frame]
-            line.set_data(data.x, heights)
-            text.set_text(labels[frame])
-            if "slider_position" in slider:
-                at = float(slider["slider_position"][frame])
-                block.set_data([at], [float(np.interp(at, data.x, heights)) + 0.25 * up])
-            return [line, block, text]
-
-        return update, frames
+        return animation(ax, lines, clock, labels), frames
 
     drawn = movie_frames(Movie(data.what, data.title, "", animate), 110.0, INK, "white")
     first, *others = [image.convert("RGB") for image in drawn]

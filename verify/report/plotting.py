@@ -6,9 +6,9 @@ are placeholders that `figure_files` turns into CSS variables, so that one SVG s
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +25,8 @@ MARKERS = "osD^vPX*"
 INK, GRID, PAPER, EVEN = "#010203", "#d0d4da", "#fefdfc", "#7f8388"
 """Text and axes, grid, background of legends; ink of movies, which reads on light and on dark."""
 VARIABLES = {INK: "currentColor", "#000000": "currentColor", GRID: f"var(--grid, {GRID})", PAPER: "var(--card, #fff)"}
+MovingLine: TypeAlias = tuple[Any, Any, str, Mapping[str, Any]]
+"""x (points,) or (frames, points), y (frames, points), line and marker, further settings."""
 NO_METADATA = {"Creator": None, "Date": None, "Format": None, "Type": None}
 
 
@@ -149,6 +151,19 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     name = escape(f"{figure.title}. {figure.caption}", quote=True)
     svg = svg.replace("<svg ", f'<svg role="img" aria-label="{name}" stroke-linejoin="round" ', 1)
     return svg, small.getvalue()
+
+
+def animation(ax: "Axes", lines: Sequence[MovingLine], clock: Any, texts: Sequence[str]) -> Callable[[int], list[Any]]:
+    """What moves lines on prepared axes to a frame and shows its text in the artist `clock`, for `Movie.animate`."""
+    artists = [ax.plot([], [], form, **style)[0] for *_, form, style in lines]
+
+    def update(frame: int) -> list[Any]:
+        for artist, (x, y, *_) in zip(artists, lines, strict=True):
+            artist.set_data(x[frame] if x.ndim > 1 else x, y[frame])
+        clock.set_text(texts[frame])
+        return [*artists, clock]
+
+    return update
 
 
 def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str = "none") -> list[Any]:

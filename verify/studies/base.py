@@ -2,17 +2,21 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import msgspec
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.registry import Registry
+from verify.report.result import Result
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.report.result import Result
-    from verify.scene.model import Scene
+    from matplotlib.axes import Axes as Axes  # noqa: PLC0414
+
+    from verify.scene.model import Scene as Scene  # noqa: PLC0414
+else:  # stand-ins for annotations: scenes import studies, and charts alone load matplotlib
+    Axes = Scene = Any
 
 Progress: TypeAlias = Callable[[str], None]  # called with the name of each step before it starts
 
@@ -34,48 +38,46 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Number of steps of a study that takes minutes, which `verify table` counts; 0 for the others."""
         return 0
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError where the scene lacks what the study needs, or has what it does not model."""
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Compute the study. Raises InputError."""
         raise NotImplementedError
 
 
-OWN = (
-    "spectrum", "convergence", "wave", "motion", "motor", "control", "identify", "claims", "sweep", "optimise",
-    "sensitivity",
-)  # fmt: skip
+OWN: tuple[str, ...] = ("spectrum", "convergence", "wave", "motion", "motor", "control", "identify")
+OWN += ("claims", "sweep", "optimise", "sensitivity")
 STUDIES: Registry[type[Study]] = Registry(
     "study", "verify.studies", homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN}, classes=True
 )  # study classes by the name of their section, in the order in which they run
 
 
-def studies_of(scene: "Scene") -> list[tuple[str, Study]]:
+def studies_of(scene: Scene) -> list[tuple[str, Study]]:
     """(name, study) of the scene's sections and of the implied ones, in the order of `STUDIES`.
 
     [[claim]] implies `claims`, a [drive] with two forces `wave` where it runs with its defaults. [motion] without a
     slider has settings for quantities in time and is no study.
     """
-    found: dict[str, Study] = dict(scene.studies)
+    studies: dict[str, Study] = dict(scene.studies)
     if scene.slider is None:
-        found.pop("motion", None)
+        studies.pop("motion", None)
     if scene.claim:
-        found.setdefault("claims", STUDIES["claims"]())
-    if "wave" not in found and len(scene.forces) == 2 and not scene.beside:
+        studies.setdefault("claims", STUDIES["claims"]())
+    if "wave" not in studies and len(scene.forces) == 2 and not scene.beside:
         wave = STUDIES["wave"]()
         with suppress(InputError):
             wave.check(scene)
-            found["wave"] = wave
-    return [(name, found[name]) for name in STUDIES if name in found]
+            studies["wave"] = wave
+    return [(name, studies[name]) for name in STUDIES if name in studies]
 
 
-def result_of(name: str, scene: "Scene", cache: "SolutionCache", progress: Progress = lambda step: None) -> "Result":
+def result_of(name: str, scene: Scene, cache: SolutionCache, progress: Progress = lambda step: None) -> Result:
     """The result of a study of the scene, computed once for gates and report. Raises InputError without the study."""
-    known = cache.motors.get(("study", name))
-    if known is None or known[0] is not scene:
+    stored = cache.motors.get(("study", name))
+    if stored is None or stored[0] is not scene:
         study = dict(studies_of(scene)).get(name)
         if study is None:
             raise InputError(f"study = {name!r} is not in the scene: add [{name}]")
-        known = cache.motors["study", name] = scene, study.run(scene, cache, progress)
-    return known[1]
+        stored = cache.motors["study", name] = scene, study.run(scene, cache, progress)
+    return stored[1]

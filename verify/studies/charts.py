@@ -1,17 +1,19 @@
-"""What the tables and charts of several studies share: columns, lines in suitable units."""
+"""What the tables, charts and movies of several studies share: columns, lines in suitable units."""
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any, TypeAlias
 
 from verify.analysis.variants import Variant
-from verify.formatting import unit_over
+from verify.formatting import unit_of, unit_over
 from verify.linear.registry import MODELS
-from verify.report.plotting import CYCLE, MODEL_COLORS
-from verify.report.result import Column, Table
+from verify.report.plotting import CYCLE, MODEL_COLORS, MovingLine, animation
+from verify.report.result import Column, Figure, Table
+from verify.studies.base import Axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
+Columns: TypeAlias = Mapping[Column, str | Callable[[Any], Any]]
+Line: TypeAlias = tuple[str, Any, Any, dict[str, Any]]  # label, x, y in SI units, style
+Axis: TypeAlias = tuple[str, str]  # name, SI unit
 THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact beam below them
 MOST_POINTS = 2000
 
@@ -26,9 +28,15 @@ def percent(name: str, form: str = "+.4g") -> "Column":
     return Column(name, format=form, percent=True)
 
 
-def table(title: str, items: Iterable[Any], columns: "Mapping[Column, Callable[[Any], Any]]", *notes: str) -> "Table":
-    """A row of each item; every column with the function that reads its value from an item."""
-    return Table(title, list(columns), [[read(item) for read in columns.values()] for item in items], notes)
+def unit_symbol(unit: str) -> str:
+    """The unit of a quantity for a table or an axis: none for '1'."""
+    return "" if unit == "1" else unit
+
+
+def table(title: str, items: Iterable[Any], columns: Columns, *notes: str) -> Table:
+    """A row of each item; every column with the key of its value in an item, or the function that reads it."""
+    rows = [[item[read] if isinstance(read, str) else read(item) for read in columns.values()] for item in items]
+    return Table(title, list(columns), rows, notes)
 
 
 def sized_title(model: str, count: int | None) -> str:
@@ -45,15 +53,18 @@ def model_style(model: str) -> dict[str, Any]:
 def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
     """The colour of a model for its first variant, others from the colour cycle."""
     colors: dict[Variant, str] = {}
-    for one in variants:
-        first = all(other.model != one.model for other in colors)
-        colors[one] = model_style(one.model)["color"] if first else CYCLE[len(colors) % len(CYCLE)]
+    for variant in variants:
+        first = all(other.model != variant.model for other in colors)
+        colors[variant] = model_style(variant.model)["color"] if first else CYCLE[len(colors) % len(CYCLE)]
     return colors
 
 
-def plot_lines(
-    ax: "Axes", lines: Iterable[tuple[str, Any, Any, dict[str, Any]]], x: tuple[str, str], y: tuple[str, str]
-) -> None:
+def line_chart(name: str, title: str, caption: str, lines: Iterable[Line], x: Axis, y: Axis) -> Figure:
+    """A chart of lines."""
+    return Figure(name, title, caption, partial(plot_lines, lines=list(lines), x=x, y=y))
+
+
+def plot_lines(ax: Axes, lines: Iterable[Line], x: Axis, y: Axis) -> None:
     """Lines (label, x, y, style) in SI units on axes (name, unit), drawn in the prefixes that suit the largest."""
     drawn = [line for line in lines if len(line[1])]
     x_unit = unit_over((float(abs(xs).max()) for _, xs, _, _ in drawn), x[1])
@@ -64,3 +75,22 @@ def plot_lines(
     ax.set(xlabel=f"{x[0]}, {x_unit.name}".rstrip(", "), ylabel=f"{y[0]}, {y_unit.name}".rstrip(", "))
     if any(label for label, *_ in drawn):
         ax.legend()
+
+
+def beam_movie(
+    lines: Sequence[MovingLine], length: float, height: float, texts: Sequence[str]
+) -> Callable[[Axes], Any]:
+    """What `Movie.animate` is, of lines in SI units over a beam of this length up to this height, m."""
+    along, up = unit_of(length), unit_of(height)
+
+    def animate(ax: Axes) -> Any:
+        (left, right), top = (-0.05 * length, 1.05 * length), 1.2 * up.factor * height
+        ax.set(xlim=(along.factor * left, along.factor * right), ylim=(-top, top))
+        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}")
+        clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
+        scaled = [(along.factor * x, up.factor * y, *style) for x, y, *style in lines]
+        update = animation(ax, scaled, clock, texts)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+        return update, range(len(texts))
+
+    return animate

@@ -1,17 +1,20 @@
 """Published statements beside the computed values: claimed, computed, whether they agree, source. No gate."""
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, evaluate
-from verify.report.result import Column, Result, Table
-from verify.studies.base import Progress, Study
-
-if TYPE_CHECKING:
-    from verify.scene.model import Claim, Scene
+from verify.report.result import Column, Result
+from verify.scene.model import Claim
+from verify.studies.base import Progress, Scene, Study
+from verify.studies.charts import table, unit_symbol
 
 READ = {"stated": "stated", "figure": "read off a figure", "follows": "implied"}
+COLUMNS = {Column("claim"): "id", Column("quantity"): "quantity", Column("claimed"): "claimed"}
+COLUMNS |= {Column("computed", format="+.5g"): "computed", Column("unit"): "unit", Column("agrees"): "agrees"}
+COLUMNS |= {Column("exact beam", format="+.5g"): "exact", Column("exact beam agrees"): "exact_agrees"}
+COLUMNS |= {Column("source"): "source"}
 NOTES = [
     "A claim without arguments is computed on the scene's own slider: segments (motion.count), exact beam.",
     "Each agrees, or does not, under the scene's conditions only; the verdict of a run is that of its gates.",
@@ -21,11 +24,9 @@ NOTES = [
 class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The scene's claims. There is no section of this name: [[claim]] implies it."""
 
-    name: ClassVar[str] = "claims"
-    title: ClassVar[str] = "Published statements and computed values"
-    devices: ClassVar[bool] = True
+    name, title, devices = "claims", "Published statements and computed values", True
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for a claim on the scene's slider where the scene runs none."""
         for claim in scene.claim:
             if of_scene(claim) and (scene.slider is None or scene.motion is None):
@@ -35,51 +36,43 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     "the claim arguments"
                 )
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Evaluate every claim; one that cannot be evaluated is a row with the reason."""
-        rows: list[dict[str, Any]] = []
-        warnings = []
+        rows, warnings = list[dict[str, Any]](), list[str]()
         for claim in scene.claim:
             progress(f"claim {claim.id}")
             row: dict[str, Any] = {"id": claim.id, "quantity": claim.quantity, "claimed": claim.expected}
             row |= {"computed": None, "unit": "", "agrees": None, "exact": None, "exact_agrees": None}
+            row["source"] = f"{claim.source} ({READ[claim.read]})"
             try:
-                row |= {"unit": unit_of(claim), "computed": computed(claim, scene, cache)}
+                quantity = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity")
+                row["unit"] = unit_symbol(quantity.unit_of(claim.arguments))
+                row["computed"] = computed(claim, scene, cache)
                 row["agrees"] = claim.agrees(row["computed"])
                 if of_scene(claim):
                     row["exact"] = computed(claim, scene, cache, model="analytic", count=None)
                     row["exact_agrees"] = claim.agrees(row["exact"])
             except InputError as error:
                 warnings.append(f"Claim {claim.id} is not evaluated: {error}")
-            rows.append(row | {"source": f"{claim.source} ({READ[claim.read]})"})
-        known = [row["agrees"] for row in rows if row["agrees"] is not None]
-        columns = [Column("claim"), Column("quantity"), Column("claimed"), Column("computed", format="+.5g")]
-        columns += [Column("unit"), Column("agrees"), Column("exact beam", format="+.5g")]
-        columns += [Column("exact beam agrees"), Column("source")]
-        share = f"{sum(known)} of {len(known)} published statements agree with the computed values"
+            rows.append(row)
+        agree = [row["agrees"] for row in rows if row["agrees"] is not None]
         return Result(
-            summary=f"{share}." if known else "",
-            tables=[Table("Claimed and computed", columns, [tuple(row.values()) for row in rows], NOTES)],
+            summary=f"{sum(agree)} of {len(agree)} published statements agree with the computed values." * bool(agree),
+            tables=[table("Claimed and computed", rows, COLUMNS, *NOTES)],
             warnings=warnings,
             data={"claims": rows},
         )
 
 
-def of_scene(claim: "Claim") -> bool:
+def of_scene(claim: Claim) -> bool:
     """Whether it is about the scene's own slider: a quantity of the slider without arguments."""
     return claim.quantity.startswith("slider.") and not claim.arguments
 
 
-def unit_of(claim: "Claim") -> str:
-    """Unit of its quantity, empty for a ratio. Raises InputError for an unknown quantity."""
-    unit = QUANTITIES.named(claim.quantity, f"claim.{claim.id}.quantity").unit_of(claim.arguments)
-    return "" if unit == "1" else unit
-
-
-def computed(claim: "Claim", scene: "Scene", cache: "SolutionCache", **other: Any) -> float:
+def computed(claim: Claim, scene: Scene, cache: SolutionCache, **other: Any) -> float:
     """The value of its quantity, with `other` arguments. Raises InputError."""
-    own = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
-    arguments = {name: value for name, value in (own | other).items() if value is not None}
+    defaults = {"model": "segment", "count": scene.motion.size(scene, cache)} if of_scene(claim) else claim.arguments
+    arguments = {name: value for name, value in (defaults | other).items() if value is not None}
     value = evaluate(claim.quantity, arguments, scene, cache)
     if not isinstance(value, float | int):
         raise InputError(f"claim.{claim.id}.quantity = {claim.quantity!r} is no real number: claim another quantity")

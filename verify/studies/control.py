@@ -1,18 +1,28 @@
 """The controlled motor of a scene: response to a step of the target on the linear, the averaged and the full plant."""
 
-from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any
 
+from verify.analysis.margins import beam_margins, marked, run_margins
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, verdict_of, void
 from verify.quantities.control import ControlOptions
-from verify.studies.base import Progress, Study
+from verify.report.result import Column, Result, Table
+from verify.studies.base import Progress, Scene, Study
+from verify.studies.charts import Columns, line_chart, percent, si, sized_title, table
 from verify.studies.motion import check_driven
 
-if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.report.result import Result
-    from verify.scene.model import Scene
 COLOURS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
 LIMIT = {"color": "#7d8590", "linestyle": "--", "linewidth": 1.0}
+LOOP = [Column("law"), Column("K_p"), Column("K_i", "1/s"), si("sample time", "s")]
+LOOP += [si("motor time constant", "s"), si("envelope time constant", "s")]
+RESPONSE: Columns = {
+    Column("plant"): lambda row: row[0],
+    percent("overshoot", ".4g"): lambda row: row[1].overshoot,
+    si("settling time", "s"): lambda row: row[1].settling_time,
+    percent("steady error", "+.3g"): lambda row: row[1].steady_error,
+    Column("steady command", format=".4g"): lambda row: float(row[1].command[-1]),
+    percent("saturated", ".3g"): lambda row: row[1].saturated,
+}
 NOTE = (
     "Linear and averaged plant: the wave follows the command with the time constant 2Q/omega of one resonance. Full: "
     "between resonances it beats at the detuning of the modes, and feet take their time to follow it; speed over the "
@@ -23,20 +33,14 @@ NOTE = (
 class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A motor whose slider is controlled in speed or position."""
 
-    name: ClassVar[str] = "control"
-    title: ClassVar[str] = "The controlled motor"
+    name, title = "control", "The controlled motor"
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without forces."""
         check_driven("control", scene)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """The responses of all plants up to the chosen one. Raises InputError."""
-        from verify.analysis.margins import beam_margins, marked, run_margins
-        from verify.analysis.verdict import Margin, verdict_of, void
-        from verify.report.result import Column, Figure, Result, Table
-        from verify.studies.charts import percent, plot_lines, si, sized_title, table
-
         progress("force over speed and command")
         loop, responses = self.loop(scene, cache), dict[str, Any]()
         for plant in list(COLOURS)[: list(COLOURS).index(self.plant) + 1]:
@@ -55,36 +59,24 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
             margins.append(Margin(name="overshoot of the averaged plant", size=differs))
         if last.settling_time is None:
             margins.append(void("the loop", "the response does not settle", "give a longer duration, or smaller gains"))
-        results = {
-            Column("plant"): lambda row: row[0],
-            percent("overshoot", ".4g"): lambda row: row[1].overshoot,
-            si("settling time", "s"): lambda row: row[1].settling_time,
-            percent("steady error", "+.3g"): lambda row: row[1].steady_error,
-            Column("steady command", format=".4g"): lambda row: float(row[1].command[-1]),
-            percent("saturated", ".3g"): lambda row: row[1].saturated,
-        }
-        gains = [Column("law"), Column("K_p"), Column("K_i", "1/s"), si("sample time", "s")]
-        gains += [si("motor time constant", "s"), si("envelope time constant", "s")]
-        own = loop.controller
-        row = ["PI", own.gain, own.integral_gain, own.sample_time, *loop.times]
-        what = (self.of, "m" if self.of == "position" else "m/s")
-        command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
-        ends = last.times[[0, -1]]
+        law, ends = loop.controller, last.times[[0, -1]]
+        gains = ["PI", law.gain, law.integral_gain, law.sample_time, *loop.times]
         lines = [("target", ends, 0.0 * ends + self.target, LIMIT)]
-        steps = [("", ends, 0.0 * ends + one, LIMIT) for one in (own.lower, own.upper)]
-        for name, one in responses.items():
+        steps = [("", ends, 0.0 * ends + limit, LIMIT) for limit in (law.lower, law.upper)]
+        for name, response in responses.items():
             style = {"color": COLOURS[name], "linewidth": 1.4}
-            lines.append((name, one.times, one.controlled, style))
-            steps.append((name, one.times[:-1], one.command, style | {"drawstyle": "steps-post"}))
-        charts = (what, f"Controlled {self.of}", lines), (command, "Command", steps)
-        summary = f"Overshoot {100.0 * last.overshoot:.3g} % on the {self.plant} plant."
+            lines.append((name, response.times, response.controlled, style))
+            steps.append((name, response.times[:-1], response.command, style | {"drawstyle": "steps-post"}))
+        controlled = (self.of, "m" if self.of == "position" else "m/s")
+        command = ("phase", "degrees") if self.output == "phase" else ("factor of the amplitudes", "")
+        charts = (controlled, f"Controlled {self.of}", lines), (command, "Command", steps)
+        caption, valid = "After a step of the target at time 0.", verdict_of(margins).level != "not trusted"
         return Result(
-            summary=summary if verdict_of(margins).level != "not trusted" else "",
-            tables=[table("Step response", responses.items(), results, NOTE), Table("Loop", gains, [row])],
+            summary=f"Overshoot {100.0 * last.overshoot:.3g} % on the {self.plant} plant." if valid else "",
+            tables=[table("Step response", responses.items(), RESPONSE, NOTE), Table("Loop", LOOP, [gains])],
             figures=[
-                Figure(f"control-{y[0]}", marked(title, margins), "After a step of the target at time 0.",
-                       partial(plot_lines, lines=drawn, x=("time", "s"), y=y))
+                line_chart(f"control-{y[0]}", marked(title, margins), caption, drawn, ("time", "s"), y)
                 for y, title, drawn in charts
             ],
             margins=margins,
-        )  # fmt: skip
+        )

@@ -1,26 +1,22 @@
 """Parameters of friction or of the beam, identified from data of a scene or from synthetic data, with intervals."""
 
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
+from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
+from verify.arrays import Array
 from verify.errors import InputError
+from verify.identify import beam, friction
+from verify.identify.fit import Fit, Model, fit
 from verify.report.result import Column, Figure, Result, Table
-from verify.studies.base import Progress, Study
-from verify.studies.charts import plot_lines
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import line_chart, plot_lines
 from verify.validation import check_number, unit
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.arrays import Array
-    from verify.identify.fit import Fit, Model
-    from verify.scene.model import Scene
 
 NOTES = (
     "Intervals of 95 %: lower and upper by Fisher information and Student's t (normal distribution for a known noise), "
@@ -28,6 +24,12 @@ NOTES = (
     "Noise: standard deviation, relative for frequencies and responses. Fit, white: probabilities of residuals that "
     "are larger, and more correlated, if the model holds.",
 )
+WHAT = "Speed of the slider in free decay, under a growing force, or on the driven beam; natural frequencies; "
+WHAT += "receptance H."
+PARAMETERS = [Column("parameter"), Column("value", format=".6g"), Column("unit"), Column("sd", format=".3g")]
+PARAMETERS += [Column(name, format=".6g") for name in ("lower", "upper", "profile lower", "profile upper")]
+PARAMETERS += [Column("verdict")]
+TESTS = [Column(name, format=".3g") for name in ("noise", "degrees of freedom", "chi^2", "fit", "white")]
 RESIDUALS = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 if the model holds."
 ORDERS = ("displacement", "velocity", "acceleration")
 Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and |H|.")]
@@ -51,15 +53,10 @@ class Synthetic(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A fit of parameters to data: `x` and `y`, a file, or synthetic."""
 
-    name: ClassVar[str] = "identify"
-    title: ClassVar[str] = "Identification"
-    files: ClassVar[tuple[str, ...]] = ("file",)
+    name, title = "identify", "Identification"
+    files = ("file",)
 
-    what: Annotated[
-        Literal["friction-decay", "breakaway", "run", "frequencies", "response"],
-        Meta(description="Speed of the slider in free decay, under a growing force, or on the driven beam; natural "
-             "frequencies; receptance H."),
-    ]  # fmt: skip
+    what: Annotated[Literal["friction-decay", "breakaway", "run", "frequencies", "response"], Meta(description=WHAT)]
     parameters: Annotated[tuple[str, ...], Meta(min_length=1, description="Parameters to fit.")]
     start: Annotated[dict[str, float], Meta(description="Start, or fixed value; by default the scene's.")] = {}  # noqa: RUF012
     noise: Annotated[Noise | None, Meta(description="Standard deviation of the data; estimated unless set.")] = None
@@ -77,20 +74,16 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
     profiles: Annotated[bool | None, Meta(description="Profiles; computed for wide intervals unless set.")] = None
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for unknown parameters, missing or doubled data, and a scene without what they need."""
-        import numpy as np
-
         if (bool(self.x or self.y), self.file is not None, self.synthetic is not None).count(True) != 1:
             raise InputError("identify: give x and y, or a file, or synthetic")
         if len(self.x) != len(self.y):
             raise InputError(f"identify.y has {len(self.y)} values and x {len(self.x)}: give as many")
         self.model_of(scene, np.array([1.0])).values({}, self.parameters)
 
-    def model_of(self, scene: "Scene", x: "Array", phase: bool = True) -> "Model":
+    def model_of(self, scene: Scene, x: Array, phase: bool = True) -> Model:
         """The model at x (n,). Raises InputError."""
-        from verify.identify import beam, friction
-
         names = (*self.parameters, *self.start, *(self.synthetic.true if self.synthetic else ()))
         if self.what == "frequencies":
             return beam.frequencies(scene.beam, names, x)
@@ -118,23 +111,22 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         return friction.run(scene.slider, names, x, simulated)
 
-    def data(self, scene: "Scene") -> "tuple[Model, Array]":
+    def data(self, scene: Scene) -> tuple[Model, Array]:
         """(model, y of the model as measured). Raises InputError."""
-        import numpy as np
-
-        if (own := self.synthetic) is not None:
-            modes = self.what == "frequencies"
-            x = np.arange(own.span[0], own.span[1] + 0.5) if modes else np.linspace(*own.span, own.points)
+        if (synthetic := self.synthetic) is not None:
+            (low, high), modes = synthetic.span, self.what == "frequencies"
+            x = np.arange(low, high + 0.5) if modes else np.linspace(low, high, synthetic.points)
             model = self.model_of(scene, x)
-            exact = model.predict(model.values(own.true))[0]
-            return model, exact + own.noise * np.random.default_rng(own.seed).standard_normal(len(exact))
+            exact = model.predict(model.values(synthetic.true))[0]
+            noise = synthetic.noise * np.random.default_rng(synthetic.seed).standard_normal(len(exact))
+            return model, exact + noise
         x, y, phase = np.array(self.x), np.array(self.y), None
         if self.file is not None:
             from verify.compare.reading import read_frequencies, read_series
 
             if self.what == "frequencies":
-                found = read_frequencies(Path(self.file))
-                x, y = np.array(found.numbers or range(1, len(found.values) + 1)), found.hertz
+                listed = read_frequencies(Path(self.file))
+                x, y = np.array(listed.numbers or range(1, len(listed.values) + 1)), listed.hertz
             else:
                 x, y, phase = read_series(Path(self.file))
         if self.what == "response":  # without 0 Hz, where spectra begin
@@ -149,65 +141,61 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         y = np.log(y / (2.0 * np.pi * x) ** order) if model.logs else y
         return model, y if phase is None else np.concatenate([y, phase - 0.5 * np.pi * order])
 
-    def fitted(self, scene: "Scene", cache: "SolutionCache") -> "tuple[Model, Array, Fit]":
+    def fitted(self, scene: Scene, cache: SolutionCache) -> tuple[Model, Array, Fit]:
         """(model, data, fit), computed once. Raises InputError."""
-        from verify.identify.fit import fit
-
         key: Any = ("identify", msgspec.json.encode(self), scene.beam, scene.slider, scene.drive)
         if key not in cache.motors:
             model, data = self.data(scene)
             true = self.synthetic.true if self.synthetic else {}
             start = {name: value for name, value in true.items() if name not in self.parameters} | self.start
-            found = fit(model, data, self.parameters, start=start, noise=self.noise, profiles=self.profiles)
-            cache.motors[key] = model, data, found
+            result = fit(model, data, self.parameters, start=start, noise=self.noise, profiles=self.profiles)
+            cache.motors[key] = model, data, result
         return cache.motors[key]  # type: ignore[no-any-return]
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Fit the parameters. Raises InputError."""
-        import numpy as np
-
         progress(f"fit of {', '.join(self.parameters)}")
-        model, data, found = self.fitted(scene, cache)
-        margins = [void("the fit", words, leads=True) for words in found.rejected]
-        known, rows, rejected = list[str](), list[list[Any]](), bool(margins)
-        for one in found.estimates.values():
-            half = 0.5 * (one.interval[1] - one.interval[0])
-            if one.reason:
-                margins.append(void(one.name, f"{one.name} is not identifiable, {one.reason}"))
+        model, data, result = self.fitted(scene, cache)
+        margins = [void("the fit", words, leads=True) for words in result.rejected]
+        identified, rows = list[str](), list[list[Any]]()
+        for estimate in result.estimates.values():
+            name, half = estimate.name, 0.5 * (estimate.interval[1] - estimate.interval[0])
+            if estimate.reason:
+                margins.append(void(name, f"{name} is not identifiable, {estimate.reason}"))
             else:
-                known.append(f"{one.name} = {one.value:.6g} ± {half:.2g} {one.unit}".rstrip())
-                size, name = half / abs(one.value), f"95 % interval of {one.name}"
-                margins.append(Margin(name=name, size=size, fine=np.inf, limit=np.inf))
-            sd, verdict = one.sd if one.sd < np.inf else None, one.reason and f"not identifiable: {one.reason}"
-            ends = (*one.interval, *(one.profile or (None, None)))
-            rows.append([one.name, one.value, one.unit, sd, *ends, verdict or "identified"])
-        names = ("lower", "upper", "profile lower", "profile upper")
-        columns = [Column("parameter"), Column("value", format=".6g"), Column("unit"), Column("sd", format=".3g")]
-        columns += [*(Column(name, format=".6g") for name in names), Column("verdict")]
-        tests = [Column(name, format=".3g") for name in ("noise", "degrees of freedom", "chi^2", "fit", "white")]
-        row = [found.noise, found.freedom, found.chi2, found.fitness, found.whiteness]
+                identified.append(f"{name} = {estimate.value:.6g} ± {half:.2g} {estimate.unit}".rstrip())
+                size = half / abs(estimate.value)
+                margins.append(Margin(name=f"95 % interval of {name}", size=size, fine=np.inf, limit=np.inf))
+            sd, ends = (
+                estimate.sd if estimate.sd < np.inf else None,
+                (*estimate.interval, *(estimate.profile or (None, None))),
+            )
+            verdict = f"not identifiable: {estimate.reason}" if estimate.reason else "identified"
+            rows.append([name, estimate.value, estimate.unit, sd, *ends, verdict])
+        tests = [result.noise, result.freedom, result.chi2, result.fitness, result.whiteness]
+        return Result(
+            summary=f"{', '.join(identified)} (95 %)." if identified and not result.rejected else "",
+            tables=[Table("Parameters", PARAMETERS, rows, NOTES), Table("Residuals", TESTS, [tests])],
+            figures=self._figures(model, data, result),
+            warnings=[f"{words[0].upper()}{words[1:]}." for words in result.rejected],
+            data={"residuals": result.residuals},
+            margins=margins,
+        )
+
+    def _figures(self, model: Model, data: Array, result: Fit) -> list[Figure]:
         x, n, points = model.x, len(model.x), {"linestyle": "None", "marker": "."}
-        shown = [np.exp(values[:n]) if model.logs else values[:n] for values in (data, found.curve)]
-        rest = found.residuals.reshape(model.channels, -1) / found.noise
-        lines = [
-            (name, x, one, points) for name, one in zip(("|H|", "phase") if len(rest) > 1 else ("",), rest, strict=True)
-        ]
+        shown = [np.exp(values[:n]) if model.logs else values[:n] for values in (data, result.curve)]
+        residuals = result.residuals.reshape(model.channels, -1) / result.noise
+        channels = ("|H|", "phase") if model.channels > 1 else ("",)
+        lines = [(name, x, channel, points) for name, channel in zip(channels, residuals, strict=True)]
 
-        measured = points | {"color": "#7d8590"}
-
-        def draw(ax: "Axes") -> None:
+        def draw(ax: Axes) -> None:
+            measured = points | {"color": "#7d8590"}
             plot_lines(ax, [("data", x, shown[0], measured), ("fit", x, shown[1], {})], *model.labels)
             ax.set_yscale("log" if self.what == "response" else "linear")
 
-        residuals = partial(plot_lines, lines=lines, x=model.labels[0], y=("residual over its sd", ""))
-        return Result(
-            summary=f"{', '.join(known)} (95 %)." if known and not rejected else "",
-            tables=[Table("Parameters", columns, rows, NOTES), Table("Residuals", tests, [row])],
-            figures=[
-                Figure("identify-fit", "Data and fit", "Least squares.", draw),
-                Figure("identify-residuals", "Residuals", RESIDUALS, residuals),
-            ],
-            warnings=[f"{words[0].upper()}{words[1:]}." for words in found.rejected],
-            data={"residuals": found.residuals},
-            margins=margins,
-        )
+        y = ("residual over its sd", "")
+        return [
+            Figure("identify-fit", "Data and fit", "Least squares.", draw),
+            line_chart("identify-residuals", "Residuals", RESIDUALS, lines, model.labels[0], y),
+        ]

@@ -1,38 +1,40 @@
 """The slider of a scene in time: displacement, velocity, friction on every model, validity margins."""
 
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of
+from verify.dynamics.arguments import Keep, Step
 from verify.errors import InputError
-from verify.formatting import unit_of, unit_over
+from verify.formatting import unit_over
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS, bounding, discrete
 from verify.problem.slider import Contact
 from verify.quantities.slider import TimeOptions, motion_arguments
+from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.settings import Start
-from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import Line, beam_movie, line_chart, model_style, percent, si, sized_title, table
+from verify.studies.tables import reduction_margins
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.axes import Axes
-
     from verify.dynamics.result import Motion as Run
-    from verify.scene.model import Scene
 
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
 FRAMES = 96
 LONG = 10  # durations of a long run
+TIME = ("time", "s")
+KEYS = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed", "coupling", "margins"]
+KEYS += ["energy", "statistics", "notes"]  # of a run, for JSON
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 
@@ -46,29 +48,17 @@ def check_start(table: str, start: Start, soft_start_periods: float | None) -> N
         raise InputError(f"{table}.soft_start_periods = {soft_start_periods!r}: a steady beam has no start, drop it")
 
 
-def check_driven(table: str, scene: "Scene") -> None:
+def check_driven(table: str, scene: Scene) -> None:
     """Raise InputError for a scene without forces, and for a drive that has no equivalent in time."""
     if not scene.forces or scene.drive is None:
         raise InputError(f"{table}: a beam moves in time under a [drive] with forces, add them")
     scene.in_time(scene.forces, scene.drive.frequency_hz)
 
 
-def reduction_margins(scene: "Scene") -> list[Margin]:
-    """Margin of the actuators' reduction to springs and masses in time; none for other drives."""
-    hertz = scene.drive.frequency_hz if scene.drive else 0.0
-    error = scene.in_time(scene.forces, hertz).error
-    if not error:
-        return []
-    softer = "use a shorter actuator, or compare with quantities of the steady wave"
-    return [Margin(name="actuators as springs and masses", size=error, where=f"at {hertz:g} Hz", remedy=softer)]
-
-
 class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
-    name: ClassVar[str] = "motion"
-    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
-    title: ClassVar[str] = "The slider"
+    name, title, accepts = "motion", "The slider", ("drive.shunt",)
 
     duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
     start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"
@@ -88,22 +78,19 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
         check_start("motion", self.start, self.soft_start_periods)
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without forces, and for steps without a slider."""
         check_driven("motion", scene)
         if scene.slider is None and self.steps_per_period != STEPS_PER_PERIOD:
             raise InputError(f"motion.steps_per_period = {self.steps_per_period!r}: only a slider takes steps, drop it")
 
-    def size(self, scene: "Scene", cache: "SolutionCache") -> int:
+    def size(self, scene: Scene, cache: SolutionCache) -> int:
         """Segments and elements: as given, or the fewest within 1 % at the drive. Raises InputError."""
         return self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Simulate the slider on every model. Raises InputError, also without a slider."""
-        import numpy as np
-
         from verify.analytic_modes import check_in_time
-        from verify.dynamics.arguments import Keep, Step
         from verify.dynamics.simulate import simulate
 
         slider = scene.slider
@@ -126,74 +113,54 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 step=Step(per_period=self.steps_per_period),
                 keep=Keep(at=nodes, samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2)),
             )
-        chain = runs[bounding()[0].name]
         sizes = [(run.model, run.count) for run in runs.values()]
         margins = beam_margins(cache, sizes, frequency_hz=scene.drive.frequency_hz)
-        margins += [one for run in runs.values() for one in run_margins(run, slider, _title(run))]
-        margins += sag_margins(cache, slider)
-        margins += reduction_margins(scene)
+        margins += [margin for run in runs.values() for margin in run_margins(run, slider, _title(run))]
+        margins += [*sag_margins(cache, slider), *reduction_margins(scene)]
         if exact:
-            true, all_runs = runs["analytic"].displacement, runs.values()
-            near = SLACK * scene.beam.length
-            margins += [against_exact("displacement", _title(run), run.displacement, true, near) for run in all_runs]
-        valid = verdict_of(margins).level != "not trusted"
+            true, near = runs["analytic"].displacement, SLACK * scene.beam.length
+            displacements = [(_title(run), run.displacement) for run in runs.values()]
+            margins += [against_exact("displacement", *moved, true, near) for moved in displacements]
+        chain, valid = runs[bounding()[0].name], verdict_of(margins).level != "not trusted"
         speeds = ", ".join(f"{_title(run)} {100 * run.mean_speed:+.3g} cm/s" for run in runs.values())
         condition = f"{slider.kinematics} kinematics, start {self.start}, {1e3 * self.duration:g} ms"
-
-        def figure(name: str, title: str, unit: str, lines: list[Any]) -> Figure:
-            drawn = partial(plot_lines, lines=lines, x=("time", "s"), y=(name, unit))
-            return Figure(f"slider-{name.split(maxsplit=1)[0]}", marked(title, margins), "Along +x.", drawn)
-
-        def of_all(name: str) -> list[Any]:
-            return [(_title(run), run.times, getattr(run, name), model_style(run.model)) for run in runs.values()]
-
-        surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
-        velocity = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
-        figures = [
-            figure("displacement", f"Displacement of the slider, N = {count}", "m", of_all("travelled")),
-            figure("velocity", f"Velocity of the slider and the surface, {_title(chain)}", "m/s", velocity),
-            figure("friction force", f"Friction force on the slider, N = {count}", "N", of_all("friction")),
-        ]
-        keys = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed"]
-        keys += ["coupling", "margins", "energy", "statistics", "notes"]
         return Result(
             summary=f"Mean speed of the slider ({condition}): {speeds}." if valid else "",
-            tables=[*_tables(runs), *([readings(scene)] if exact and slider.contact is None else [])],
-            figures=figures,
+            tables=[_table(runs), *([readings(scene)] if exact and slider.contact is None else [])],
+            figures=_figures(runs, chain, count, margins),
             movies=[Movie("slider-moving", f"The slider on the wave, {_title(chain)}", MOVIE, _movie(chain))],
-            data={"runs": {model: {key: getattr(run, key) for key in keys} for model, run in runs.items()}},
+            data={"runs": {model: {key: getattr(run, key) for key in KEYS} for model, run in runs.items()}},
             margins=margins,
         )
 
 
-def readings(scene: "Scene") -> "Table":
+def readings(scene: Scene) -> Table:
     """Mean speed of the one slider on the exact beam by every reading of it, with the margins of each.
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
-    from verify.dynamics.arguments import Keep
     from verify.dynamics.simulate import simulate
 
-    own = scene.slider
-    assert own is not None
-    point = replace(own, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
+    assert scene.slider is not None
+    mounted = scene.slider
+    point = replace(mounted, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
     opening = replace(point, kinematics="tangential", normal="bilateral", line="spline", contact=Contact())
     rows: list[tuple[Any, ...]] = []
     for name, assumption, slider, times in (
         ("tangential", "stays on the surface and moves along it alone", replace(point, kinematics="tangential"), 1),
         ("following", "stays on it and moves with it across the beam", replace(point, kinematics="following"), 1),
-        (f"{own.kinematics}, long", "the same after its start", point, LONG),
-        ("contact that opens", "lifts off and lands", own if own.contact else opening, LONG),
+        (f"{mounted.kinematics}, long", "the same after its start", point, LONG),
+        ("contact that opens", "lifts off and lands", mounted if mounted.contact else opening, LONG),
     ):
         duration = times * scene.motion.duration
         try:
             arguments = motion_arguments(scene, TimeOptions(model="analytic", time=duration))
             run = simulate(**arguments, slider=slider, keep=Keep(samples=2))
-            found = verdict_of(run_margins(run, slider, "exact beam"))
-            worst = found.margins[0].text if found.margins else ""
-            rows.append((name, assumption, duration, run.mean_speed, found.level, worst))
+            verdict = verdict_of(run_margins(run, slider, "exact beam"))
+            worst = verdict.margins[0].text if verdict.margins else ""
+            rows.append((name, assumption, duration, run.mean_speed, verdict.level, worst))
         except InputError as error:
-            hard = "two-way coupling with hard contact" if slider is opening and own.coupling == "two-way" else ""
+            hard = "two-way coupling with hard contact" if slider is opening and mounted.coupling == "two-way" else ""
             rows.append((name, assumption, duration, None, "not computed", hard or str(error)))
     columns = [Column("reading"), Column("the slider"), si("time", "s"), si("mean speed", "m/s", "+.4g")]
     valid = ", ".join(row[0] for row in rows if row[3] is not None and row[4] != "not trusted")
@@ -201,11 +168,31 @@ def readings(scene: "Scene") -> "Table":
     return Table("Speed of the slider", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 
 
+def _figures(runs: "dict[str, Run]", chain: "Run", count: int, margins: list[Margin]) -> list[Figure]:
+    """Displacement and friction on each model; velocities of the slider and of the chain's surface."""
+    surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
+    velocities = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
+
+    def each(figure: str) -> list[Line]:
+        return [(_title(run), run.times, getattr(run, figure), model_style(run.model)) for run in runs.values()]
+
+    return [
+        line_chart(
+            f"slider-{name.split(maxsplit=1)[0]}", marked(title, margins), "Along +x.", lines, TIME, (name, unit)
+        )
+        for name, unit, title, lines in (
+            ("displacement", "m", f"Displacement of the slider, N = {count}", each("travelled")),
+            ("velocity", "m/s", f"Velocity of the slider and the surface, {_title(chain)}", velocities),
+            ("friction force", "N", f"Friction force on the slider, N = {count}", each("friction")),
+        )
+    ]
+
+
 def _title(run: "Run") -> str:
     return sized_title(run.model, run.count)
 
 
-def _tables(runs: "dict[str, Run]") -> "list[Table]":
+def _table(runs: "dict[str, Run]") -> Table:
     from verify.dynamics.step_control import exchanged
 
     exact, all_runs = runs["analytic"].displacement if "analytic" in runs else 0.0, runs.values()
@@ -225,34 +212,21 @@ def _tables(runs: "dict[str, Run]") -> "list[Table]":
         Column("steps"): lambda run: run.statistics.steps,
         Column("energy imbalance", format=".1e"): imbalance,
     }
-    return [table("Slider on each model", all_runs, results)]
+    return table("Slider on each model", all_runs, results)
 
 
-def _movie(run: "Run") -> "Callable[[Axes], Any]":
-    def set_up(ax: "Axes") -> Any:
-        import numpy as np
-
-        kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
-        along, up = unit_of(float(run.points[-1])), unit_over([float(abs(run.deflection).max())])
-        time = unit_over([float(run.times[-1])], "s")
-        x, friction = along.factor * run.points, run.friction / (float(abs(run.friction).max()) or 1.0)
-        (links,) = ax.plot(x, 0.0 * x, "-o", markersize=3, label=_title(run), **model_style(run.model))
-        (force,) = ax.plot([], [], color=FRICTION, linewidth=3.0, label="friction on the slider")
-        (block,) = ax.plot([], [], "s", color=SLIDER, markersize=10, label="slider")
-        top = 1.2 * up.factor * float(abs(run.deflection).max())
-        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", ylim=(-top, top))
-        clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
-
-        def update(k: int) -> list[Any]:
-            place, y = along.factor * run.position[k], up.factor * run.deflection[k]
-            height = float(np.interp(place, x, y))
-            links.set_ydata(y)
-            force.set_data([place, place + 0.08 * x[-1] * friction[k]], [height, height])
-            block.set_data([place], [height])
-            clock.set_text(f"{time.factor * run.times[k]:.3f} {time.name}")
-            return [links, force, block, clock]
-
-        return update, kept.tolist()
-
-    return set_up
+def _movie(run: "Run") -> Callable[[Axes], Any]:
+    """The links with the slider on them, and the friction on it as a bar."""
+    kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
+    time, length = unit_over([float(run.times[-1])], "s"), float(run.points[-1])
+    place, deflection = run.position[kept, None], run.deflection[kept]
+    height = np.array([np.interp(x, run.points, w) for x, w in zip(place, deflection, strict=True)])
+    bar = 0.08 * length * run.friction[kept, None] / (float(abs(run.friction).max()) or 1.0)
+    friction = {"color": FRICTION, "linewidth": 3.0, "label": "friction on the slider"}
+    lines: list[MovingLine] = [
+        (run.points, deflection, "-o", {"markersize": 3, "label": _title(run)} | model_style(run.model)),
+        (np.hstack([place, place + bar]), np.hstack([height, height]), "-", friction),
+        (place, height, "s", {"color": SLIDER, "markersize": 10, "label": "slider"}),
+    ]
+    texts = [f"{time.factor * t:.3f} {time.name}" for t in run.times[kept]]
+    return beam_movie(lines, length, float(abs(run.deflection).max()), texts)

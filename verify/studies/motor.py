@@ -1,44 +1,41 @@
 """The motor of a scene: force over speed, no load, start, stop and reversal, on every model."""
 
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 from math import copysign, inf
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
+from verify.analysis.margins import beam_margins, marked, run_margins, sag_margins, sufficient_count
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, verdict_of, void
 from verify.errors import InputError
 from verify.formatting import unit_of, with_error, with_unit
+from verify.linear.registry import MODELS
+from verify.quantities.motor import MotorOptions, cached
+from verify.quantities.options import ModelName
+from verify.report.result import Column, Figure, Result, Table
 from verify.settings import Start
-from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, percent, plot_lines, si, sized_title, table
-from verify.studies.motion import Damping, check_driven, check_start, readings, reduction_margins
+from verify.studies.base import Progress, Scene, Study
+from verify.studies.charts import Columns, Line, line_chart, model_style, percent, si, sized_title, table
+from verify.studies.motion import Damping, check_driven, check_start, readings
+from verify.studies.tables import path_margins, reduction_margins
 
 if TYPE_CHECKING:
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.analysis.verdict import Margin
     from verify.motor.curves import TimeConstant, Transient
     from verify.motor.steady_state import MotorCase, SteadyState
-    from verify.report.result import Figure, Result, Table
-    from verify.scene.model import Scene
 
-UNEVEN = 1.25
-"""Standing-wave ratio from which the crest speed, and with it that of a slider on short feet, varies along the beam by
-more than a tenth about its mean."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
-SPEED, FORCE, POWER, TIME = ("speed", "m/s"), ("force", "N"), ("power", "W"), ("time", "s")
-CHARTS = {
-    "motor-force": ("Force over speed", SPEED, FORCE, "Mean friction force along +x on the slider at a prescribed "
-    "speed and fixed position. Dashed: mu N."),
-    "motor-power": ("Power over speed", SPEED, POWER, "Force times speed; below zero the load drives the motor."),
-    "motor-speed": ("Start, stop, reversal", TIME, SPEED, "Means over a sliding period of the drive: free run from the "
-    "slider's own speed (solid), drive switched off (dotted), drive phases reversed (dashed). The beam's own transient "
-    "is neglected."),
-}  # fmt: skip
+SPEED = ("speed", "m/s")
+AT_SPEED = "Mean friction force along +x on the slider at a prescribed speed and fixed position. Dashed: mu N."
+POWERED = "Force times speed; below zero the load drives the motor."
+IN_TIME = (
+    "Means over a sliding period of the drive: free run from the slider's own speed (solid), drive switched off "
+    "(dotted), drive phases reversed (dashed). The beam's own transient is neglected."
+)
 NOTES = (
     "Crest speed: amplitude of the tangential surface velocity at the slider. No-load speed: prescribed, with zero "
     "mean force, of a heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run, "
@@ -69,9 +66,7 @@ class Field:
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
-    name: ClassVar[str] = "motor"
-    accepts: ClassVar[tuple[str, ...]] = ("drive.shunt",)
-    title: ClassVar[str] = "The motor"
+    name, title, accepts = "motor", "The motor", ("drive.shunt",)
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
     count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements; by default within 1 %.")] | None = None
@@ -83,8 +78,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
 
     def __post_init__(self) -> None:
-        from verify.quantities.options import ModelName
-
         for model in self.models:
             ModelName("time_basis").check(model, "motor.models")
         check_start("motor", self.start, self.soft_start_periods)
@@ -94,7 +87,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Points of force over speed, no-load speed and free run on every model."""
         return len(self.models) * (self.speeds + 2)
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
         from verify.dynamics.contact_assembly import check_sliders
 
@@ -103,24 +96,20 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
         check_sliders(scene.beam, (scene.slider,), (scene.slider.initial_position(scene.beam),))
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Run the motor on every model. Raises InputError."""
-        from verify.analysis.margins import sufficient_count
-        from verify.analysis.verdict import verdict_of
-        from verify.linear.registry import MODELS
         from verify.motor.curves import REASONS
-        from verify.quantities.motor import MotorOptions
-        from verify.report.result import Result
 
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields, number = list[Field](), iter(range(1, self.steps + 1))
+        settings: dict[str, Any] = {name: getattr(self, name) for name in ("modal_damping", "steps_per_period")}
+
+        def step(what: str) -> None:
+            progress(f"{next(number)} of {self.steps}: {what}")
+
         for model in self.models:
-            own: dict[str, Any] = {name: getattr(self, name) for name in ("modal_damping", "steps_per_period")}
-            case = MotorOptions(model=model, count=n if MODELS[model].sized else None, **own).case(scene)
-            like = fields[0].curve if fields else []
-            fields.append(
-                self._field(case, like, cache, lambda what: progress(f"{next(number)} of {self.steps}: {what}"))
-            )
+            case = MotorOptions(model=model, count=n if MODELS[model].sized else None, **settings).case(scene)
+            fields.append(self._field(case, fields[0].curve if fields else [], cache, step))
         first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
         margins += path_margins(first.case.model, first.case.count, scene, cache) + reduction_margins(scene)
         valid = verdict_of(margins).level != "not trusted"
@@ -134,11 +123,10 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             margins=margins,
         )
 
-    def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: "SolutionCache", progress: Progress) -> Field:
+    def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: SolutionCache, progress: Progress) -> Field:
         """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
         from verify.motor import curves
         from verify.motor.steady_state import PERIODS, crest_speed, steady_state
-        from verify.quantities.motor import cached
 
         name = sized_title(case.model, case.count)
         progress(f"stall force, {name}")
@@ -149,7 +137,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for speed in speeds[1:]:
             progress(f"force at {with_unit(speed, 'm/s', '+.4g')}, {name}")
             curve.append(steady_state(case, speed, PERIODS, still.run))
-        missing: list[str] = list(dict.fromkeys(one for at in curve for one in at.not_converged))
+        missing: list[str] = list(dict.fromkeys(figure for at in curve for figure in at.not_converged))
         unloaded = None
         progress(f"no-load speed, {name}")
         try:
@@ -189,10 +177,8 @@ def _with_error(name: str, value: float, error: float, symbol: str) -> str:
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
 
 
-def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
+def _margins(fields: list[Field], cache: SolutionCache) -> list[Margin]:
     """Margins of the beam at the drive, free runs, static sag, and figures that have not converged."""
-    from verify.analysis.margins import beam_margins, run_margins, sag_margins
-    from verify.analysis.verdict import Margin, void
     from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
@@ -211,22 +197,8 @@ def _margins(fields: list[Field], cache: "SolutionCache") -> "list[Margin]":
     return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
 
 
-def path_margins(model: str, count: int | None, scene: "Scene", cache: "SolutionCache") -> "list[Margin]":
-    """Condition of the speed of a slider that moves along a partly standing wave."""
-    from verify.analysis.verdict import Margin
-    from verify.quantities.base import evaluate
-
-    with suppress(InputError):  # no two waves in the window
-        ratio: Any = evaluate("wave.standing_wave_ratio", {"model": model, "count": count}, scene, cache)
-        path = f"the speed along the path of the run is meant (standing-wave ratio {ratio:.3g})"
-        name = "variation of the speed along the beam"
-        return [Margin(name=name, size=ratio, fine=UNEVEN, limit=inf, condition=path, is_error=False)]
-    return []
-
-
-def _tables(fields: list[Field]) -> "list[Table]":
+def _tables(fields: list[Field]) -> list[Table]:
     from verify.motor.steady_state import surface_motion
-    from verify.report.result import Column
 
     def last(field: Field, share: str) -> float:
         return float(getattr(field.free.run, share)[-field.free.last :].mean())
@@ -237,7 +209,7 @@ def _tables(fields: list[Field]) -> "list[Table]":
     def power(field: Field, loss: str) -> float:
         return float(getattr(field.free.run.energy, loss)) / field.free.run.duration
 
-    model: dict[Any, Callable[[Field], Any]] = {Column("model"): lambda field: field.name}
+    model: dict[Column, Any] = {Column("model"): lambda field: field.name}
     speed = model | {
         si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
         si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
@@ -262,7 +234,7 @@ def _tables(fields: list[Field]) -> "list[Table]":
         si("stop", "s", ".3g"): lambda field: time(field, "stop"),
         si("reversal", "s", ".3g"): lambda field: time(field, "reversal"),
     }
-    curve: dict[Any, Callable[[Any], Any]] = {
+    curve: Columns = {
         Column("model"): lambda row: row[0],
         si("speed", "m/s", "+.4g"): lambda row: row[1].speed,
         si("force", "N", "+.4g"): lambda row: row[1].means.force,
@@ -284,29 +256,26 @@ def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
     return value if at.converged("force", *figures) else None
 
 
-def _figures(fields: list[Field], margins: "list[Margin]") -> "list[Figure]":
-    import numpy as np
-
-    from verify.analysis.margins import marked
-    from verify.report.result import Figure
-
-    lines: dict[str, list[Any]] = {key: [] for key in CHARTS}
-    for field in sorted(fields, key=lambda one: one.case.count or 0):
-        name, style = field.name, model_style(field.case.model)
+def _figures(fields: list[Field], margins: list[Margin]) -> list[Figure]:
+    forces, powers, speeds = list[Line](), list[Line](), list[Line]()
+    for field in sorted(fields, key=lambda field: field.case.count or 0):
+        style = model_style(field.case.model)
         states = [at for at in field.curve if at.converged("force")]
         v = np.array([at.speed for at in states])
-        lines["motor-force"].append((name, v, np.array([at.means.force for at in states]), style))
-        lines["motor-power"].append((name, v, np.array([at.power for at in states]), style))
+        forces.append((field.name, v, np.array([at.means.force for at in states]), style))
+        powers.append((field.name, v, np.array([at.power for at in states]), style))
         shown = TIME_CONSTANTS * max((at.time for at in field.times.values() if not at.missing), default=np.inf)
-        for dash, one in {"-": field.free, ":": field.stop, "--": field.reversal}.items():
-            if one is not None:
-                n = max(int(np.searchsorted(one.times, shown)), 3)
-                own = style if dash == "-" else style | {"linestyle": dash, "linewidth": 1.4}
-                lines["motor-speed"].append((name if dash == "-" else "", one.times[:n], one.speeds[:n], own))
+        for run, dash in ((field.free, ""), (field.stop, ":"), (field.reversal, "--")):
+            if run is not None:
+                n = max(int(np.searchsorted(run.times, shown)), 3)
+                drawn = style | {"linestyle": dash, "linewidth": 1.4} if dash else style
+                speeds.append(("" if dash else field.name, run.times[:n], run.speeds[:n], drawn))
     still, ends = fields[0].curve[0].means, np.array([0.0, fields[0].curve[-1].speed])
     limit = np.copysign(fields[0].case.slider.mu * still.normal_force, still.force)
-    lines["motor-force"].append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
+    forces.append(("mu N", ends, np.array([limit, limit]), {"color": "#7d8590", "linestyle": "--"}))
+    force, power, time = (marked(t, margins) for t in ("Force over speed", "Power over speed", "Start, stop, reversal"))
     return [
-        Figure(key, marked(title, margins), caption, partial(plot_lines, lines=lines[key], x=x, y=y))
-        for key, (title, x, y, caption) in CHARTS.items()
+        line_chart("motor-force", force, AT_SPEED, forces, SPEED, ("force", "N")),
+        line_chart("motor-power", power, POWERED, powers, SPEED, ("power", "W")),
+        line_chart("motor-speed", time, IN_TIME, speeds, ("time", "s"), SPEED),
     ]

@@ -8,10 +8,11 @@ and treats limits as constraints. Before it is reported the optimum is searched 
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import accumulate
-from math import inf, isfinite, log
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
+from math import inf, log
+from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -22,21 +23,17 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.parallel import completed, workers
-from verify.quantities.base import QUANTITIES, evaluate
+from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
 from verify.scene.model import Limits
-from verify.studies.base import Progress, Study
-from verify.studies.sweep import Request, plain_tables, quantity_margins, value_at, varied
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import unit_symbol
+from verify.studies.tables import Row, Variants
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.scene.model import Scene
-
-Task: TypeAlias = tuple[dict[str, Any], Sequence[Request], dict[str, float]]  # arguments of `varied`
 Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
 STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
 INFEASIBLE = 1e30  # least merit of a point that violates a limit
+MOST_EXCESS = 900.0  # that counts: a point without a value, of merit 1000 INFEASIBLE, ranks behind all others
 TOLERANCE = 1e-6  # violation, relative to a limit, up to which a point is feasible
 ACTIVE = 1e-3
 FINAL = 1e-9  # accuracy of a variable relative to its range
@@ -90,9 +87,7 @@ class Limit(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The least or largest value of a quantity over keys of the scene."""
 
-    name: ClassVar[str] = "optimise"
-    title: ClassVar[str] = "Optimum"
-    devices: ClassVar[bool] = True
+    name, title, devices = "optimise", "Optimum", True
 
     quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
     arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
@@ -106,96 +101,100 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     evaluations: Annotated[int, Meta(ge=10, description="Most points of each search.")] = 1000
     seed: Annotated[int, Meta(ge=1, description="Of random numbers.")] = 1
 
-    @property
-    def requests(self) -> list[Request]:
-        """The quantity, then those of the limits."""
-        return [(self.quantity, self.arguments), *((one.quantity, one.arguments) for one in self.limit)]
+    def variants(self, scene: Scene) -> Variants:
+        """The quantity, then those of the limits, on the scene."""
+        limits = [(limit.quantity, limit.arguments) for limit in self.limit]
+        return Variants.of(scene, [(self.quantity, self.arguments), *limits])
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, argument or key, and a start outside of its bounds."""
-        tables = plain_tables(scene)
-        varied(tables, self.requests, values := self.values(self.start(tables)))
-        if len(values) < len(self.variable):
-            raise InputError("optimise.variable: a key occurs twice, give each once")
+        variants = self.variants(scene)
+        start = self.start(variants)
+        variants.check("optimise.variable", [(v.key, v.value(u)) for v, u in zip(self.variable, start, strict=True)])
 
-    def start(self, tables: dict[str, Any]) -> Point:
+    def start(self, variants: Variants) -> Point:
         """Start of each variable, from 0 to 1. Raises InputError."""
-        found = []
-        for one in self.variable:
-            value: Any = value_at(tables, one.key, self.requests) if one.start is None else one.start
-            if not isinstance(value, int | float) or not one.low <= value <= one.high:
-                bounds = f"between {one.low:g} and {one.high:g}"
-                raise InputError(f"optimise.variable {one.key}: its start {value!r} is no number {bounds}: give start")
-            found.append(one.unit(value))
-        return tuple(found)
+        point = []
+        for variable in self.variable:
+            value: Any = variants.value(variable.key) if variable.start is None else variable.start
+            if not isinstance(value, int | float) or not variable.low <= value <= variable.high:
+                which = f"its start {value!r} is no number between {variable.low:g} and {variable.high:g}"
+                raise InputError(f"optimise.variable {variable.key}: {which}: give start")
+            point.append(variable.unit(value))
+        return tuple(point)
 
     def values(self, point: Point) -> dict[str, float]:
         """Values by key."""
-        return {one.key: one.value(u) for one, u in zip(self.variable, point, strict=True)}
+        return {variable.key: variable.value(u) for variable, u in zip(self.variable, point, strict=True)}
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Search the optimum, and from it again on a finer model, with the workers of `parallel`.
 
         Returns the variables with active bounds, the quantities at the start and at both optima, and the history.
         Without a feasible point the result is void. Raises InputError.
         """
         self.check(scene)
-        tables = plain_tables(scene)
-        begin = self.start(tables)
+        variants = self.variants(scene)
+        begin = self.start(variants)
         with workers(self.evaluations) as executor:
-            coarse = finer = Search(self, tables, self.requests, executor, progress)
+            coarse = finer = Search(self, variants, executor, progress)
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:
                 coarse.run(stage)
-            requests, labels = _finer(tables, self.requests, self.values(coarse.best))
+            finest, labels = _finer(variants, self.values(coarse.best))
             if coarse.feasible and any(labels):
-                finer = Search(self, tables, requests, executor, progress)
+                finer = Search(self, finest, executor, progress)
                 finer.merits([coarse.best])
                 finer.run("COBYQA")
-        points = (coarse, begin), (coarse, coarse.best), (finer, coarse.best), (finer, finer.best)
-        best, values = finer.best, self.values(finer.best)
-        missing: list[float | None] = [None] * len(requests)
-        start, optimum, there, last = (search.found[point][0] or missing for search, point in points)
-        rows, sizes = [], list[tuple[Any, ...]]()
-        for one, *at in zip(self.variable, begin, coarse.best, best, strict=True):
-            bound = "low" if at[-1] < ACTIVE else "high" if at[-1] > 1.0 - ACTIVE else ""
-            rows.append((one.key, one.low, one.high, *map(one.value, at), bound))
-        for i, (name, _) in enumerate(requests):
-            role, unit, active = self.limit[i - 1].limits if i else f"{self.goal}d", QUANTITIES[name].unit, None
-            if i and (size := last[i]) is not None:
-                active = min(map(abs, self.limit[i - 1].distances(size))) < ACTIVE
-            head = name, role, active, "" if unit == "1" else unit
-            model = labels[i] if labels[i] and finer is not coarse else "the same"
-            sizes.append((*head, start[i], optimum[i], there[i], last[i], model))
-        shown = [
-            Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES),
-            Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], sizes),
-        ]
-        data = {"optimum": values, "points": len(coarse.found) + (finer is not coarse) * len(finer.found)}
+        values = self.values(finer.best)
+        stages = [coarse.rows[begin], coarse.rows[coarse.best], finer.rows[coarse.best], finer.rows[finer.best]]
+        start, _, refined, last = (row.values[0] for row in stages)
+        models = [label if label and finer is not coarse else "the same" for label in labels]
+        shown = [self._variables(begin, coarse.best, finer.best), self._objective(stages, models)]
+        data = {"optimum": values, "points": len(coarse.rows) + (finer is not coarse) * len(finer.rows)}
         notes = list(dict.fromkeys(coarse.notes + finer.notes))
-        if not finer.feasible or last[0] is None:
+        if not finer.feasible or last is None:
             failure = "no point satisfies all limits (the best one is in the table)"
-            if last[0] is None:
-                failure = f"no point has a value of all quantities (the first: {finer.found[best][1]})"
+            if last is None:
+                failure = f"no point has a value of all quantities (the first: {stages[-1].reason})"
             margins = [void("the optimum", failure, "widen optimise.variable, or relax optimise.limit")]
             return Result("", shown, warnings=notes, data=data, margins=margins)
-        loss = inf if there[0] is None else abs(there[0] - last[0]) / (max(abs(last[0]), abs(start[0] or 0.0)) or 1.0)
+        loss = inf if refined is None else abs(refined - last) / (max(abs(last), abs(start or 0.0)) or 1.0)
         margins = []
         if any(label not in ("", EXACT) for label in labels):
             cause = "the optimum moves with the discretisation"
             margins = [Margin(name="discretisation of the optimum", size=loss, failure=cause, remedy="raise count")]
-        at_best, solved, requests = varied(tables, requests, values)
-        margins += [one for request in requests for one in quantity_margins(*request, at_best, solved)]
-        before = "" if start[0] is None else f" (start: {start[0]:.6g})"
+        before = "" if start is None else f" (start: {start:.6g})"
         where = ", ".join(f"{key} = {x:.8g}" for key, x in values.items())
+        value = f"{last:.6g} {unit_symbol(QUANTITIES[self.quantity].unit)}".rstrip()
         return Result(
-            summary=f"{self.quantity} {self.goal}d: {last[0]:.6g}{f' {sizes[0][3]}'.rstrip()}{before} at {where}.",
+            summary=f"{self.quantity} {self.goal}d: {value}{before} at {where}.",
             tables=shown,
             figures=[Figure("optimise-history", f"Search for the optimum of {self.quantity}", HISTORY, coarse.draw)],
             warnings=notes,
             data=data | {"loss by discretisation": loss, "history": coarse.history},
-            margins=margins,
+            margins=[*margins, *finer.variants.margins(values)],
         )
+
+    def _variables(self, *points: Point) -> Table:
+        """Values of the variables at the start and at both optima, with active bounds."""
+        rows = []
+        for variable, *stages in zip(self.variable, *points, strict=True):
+            bound = "low" if stages[-1] < ACTIVE else "high" if stages[-1] > 1.0 - ACTIVE else ""
+            rows.append((variable.key, variable.low, variable.high, *map(variable.value, stages), bound))
+        return Table("Variables", [Column(name, format=".9g") for name in VARIABLES], rows, NOTES)
+
+    def _objective(self, stages: Sequence[Row], models: Sequence[str]) -> Table:
+        """Values of objective and limits at these points, with active limits, and the finer model of each."""
+        rows = []
+        names, limits = [self.quantity, *(limit.quantity for limit in self.limit)], [None, *self.limit]
+        for i, (name, limit, model) in enumerate(zip(names, limits, models, strict=True)):
+            sizes, active = [row.values[i] for row in stages], None
+            if limit and sizes[-1] is not None:
+                active = min(map(abs, limit.distances(sizes[-1]))) < ACTIVE
+            role = limit.limits if limit else f"{self.goal}d"
+            rows.append((name, role, active, unit_symbol(QUANTITIES[name].unit), *sizes, model))
+        return Table("Objective and limits", [Column(name, format=".6g") for name in FIGURES], rows)
 
 
 @dataclass
@@ -203,12 +202,11 @@ class Search:
     """Objective and limits on one model, in variables from 0 to 1; every point is evaluated once and recorded."""
 
     study: Optimise
-    tables: dict[str, Any]
-    requests: list[Request]
+    variants: Variants
     executor: Executor | None
     progress: Progress
-    found: dict[Point, tuple[list[float] | None, str]] = field(default_factory=dict)
-    """(values, '') or (None, reason) of the requests, by point."""
+    rows: dict[Point, Row] = field(default_factory=dict)
+    """By point."""
     notes: list[str] = field(default_factory=list)
     """Searches that stopped early."""
 
@@ -217,33 +215,33 @@ class Search:
         """Of the objective in its merit."""
         return 1.0 if self.study.goal == "minimise" else -1.0
 
-    def merits(self, points: "Iterable[Iterable[float]]") -> list[float]:
+    def merits(self, points: Iterable[Iterable[float]]) -> list[float]:
         """Merit of each point: the least is the best."""
         keys: list[Point] = [tuple(map(float, point)) for point in points]
-        new = [key for key in dict.fromkeys(keys) if key not in self.found]
-        tasks: list[Task] = [(self.tables, self.requests, self.study.values(key)) for key in new]
-        results = dict(completed(figures_at, tasks, self.executor if len(new) > 1 else None))
-        self.found |= {key: results[i] for i, key in enumerate(new)}
-        self.progress(f"optimise: {len(self.found)} points")
+        new = [key for key in dict.fromkeys(keys) if key not in self.rows]
+        row_at, executor = partial(self.variants.row, real=True), self.executor if len(new) > 1 else None
+        rows = dict(completed(row_at, map(self.study.values, new), executor))
+        self.rows |= {key: rows[i] for i, key in enumerate(new)}
+        self.progress(f"optimise: {len(self.rows)} points")
         return [self.merit(key) for key in keys]
 
     def merit(self, point: Point) -> float:
         """Signed objective of a feasible point; for another beyond INFEASIBLE by its violation."""
-        values = self.found[point][0]
-        if values is None:
+        row = self.rows[point]
+        if row.reason is not None:
             return 1e3 * INFEASIBLE
-        excess = sum(-one for one in self.distances(values) if one < -TOLERANCE)
-        return INFEASIBLE * (1.0 + min(excess, 900.0)) if excess else self.sign * values[0]
+        excess = sum(-distance for distance in self.distances(row.values) if distance < -TOLERANCE)
+        return INFEASIBLE * (1.0 + min(excess, MOST_EXCESS)) if excess else self.sign * row.values[0]
 
     def distances(self, values: Sequence[float]) -> list[float]:
         """Relative distances from all limits, negative where violated."""
         limits = zip(self.study.limit, values[1:], strict=True)
-        return [distance for one, value in limits for distance in one.distances(value)]
+        return [distance for limit, value in limits for distance in limit.distances(value)]
 
     @property
     def best(self) -> Point:
         """The point of least merit."""
-        return min(self.found, key=self.merit)
+        return min(self.rows, key=self.merit)
 
     @property
     def feasible(self) -> bool:
@@ -253,14 +251,14 @@ class Search:
     @property
     def history(self) -> list[tuple[int, float]]:
         """(number, objective) of every feasible point."""
-        merits = enumerate(map(self.merit, self.found), 1)
+        merits = enumerate(map(self.merit, self.rows), 1)
         return [(i, self.sign * merit) for i, merit in merits if merit < INFEASIBLE]
 
     def run(self, stage: str) -> None:
         """One method, from the best point so far. Raises InputError where it is not installed."""
         from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
-        start, most, d, before = self.best, self.study.evaluations, len(self.study.variable), len(self.found)
+        start, most, d, before = self.best, self.study.evaluations, len(self.study.variable), len(self.rows)
         if stage == "DE":
             options: Any = {"vectorized": True, "updating": "deferred", "polish": False, "rng": self.study.seed}
             options |= {"popsize": POPULATION, "maxiter": max(most // (POPULATION * d) - 1, 1), "x0": start}
@@ -281,27 +279,27 @@ class Search:
                 points = evolution.ask()
                 evolution.tell(points, self.merits(points))
             return
-        n = len(self.distances([0.0] * len(self.requests)))
-        first = self.found[start][0]  # violates limits where it is the optimum of a coarser model
-        size = (abs(first[0]) if first else 0.0) or 1.0
+        n = len(self.distances([0.0] * len(self.variants.requests)))
+        first = self.rows[start].values[0]  # of a point that violates limits if it is the optimum of a coarser model
+        size = abs(first or 0.0) or 1.0
 
-        def values(x: "Array") -> list[float] | None:
+        def row(x: Array) -> Row:
             self.merits([x])
-            return self.found[tuple(map(float, x))][0]
+            return self.rows[tuple(map(float, x))]
 
-        def objective(x: "Array") -> float:
-            return self.sign * here[0] / size if (here := values(x)) else 1e3
+        def objective(x: Array) -> float:
+            return self.sign * here.values[0] / size if (here := row(x)).reason is None else 1e3
 
-        def distances(x: "Array") -> list[float]:
-            return self.distances(here) if (here := values(x)) else [-1.0] * n
+        def distances(x: Array) -> list[float]:
+            return self.distances(here.values) if (here := row(x)).reason is None else [-1.0] * n
 
         limits = [NonlinearConstraint(distances, 0.0, inf)] if n else []
         radii = {"maxfev": most, "initial_tr_radius": 0.05, "final_tr_radius": FINAL}
         minimize(objective, start, method=stage, bounds=[(0.0, 1.0)] * d, constraints=limits, options=radii)
-        if len(self.found) - before >= most:
+        if len(self.rows) - before >= most:
             self.notes.append(f"The local search stopped at its {most} points: raise optimise.evaluations.")
 
-    def draw(self, ax: "Axes") -> None:
+    def draw(self, ax: Axes) -> None:
         """Feasible points and the best so far."""
         numbers, values = zip(*self.history, strict=True)
         ax.plot(numbers, values, ".", alpha=0.5, label="points")
@@ -309,47 +307,35 @@ class Search:
         ax.step(numbers, list(best), where="post", label="best so far")
         if min(values) > 0.0 and max(values) > 30.0 * min(values):
             ax.set_yscale("log")
-        unit = QUANTITIES[self.study.quantity].unit
-        ax.set(xlabel="point", ylabel=self.study.quantity + ("" if unit == "1" else f", {unit}"))
+        quantity = self.study.quantity
+        ax.set(xlabel="point", ylabel=f"{quantity}, {unit_symbol(QUANTITIES[quantity].unit)}".rstrip(", "))
         ax.legend()
 
 
-def figures_at(task: Task) -> tuple[list[float] | None, str]:
-    """(values of quantities on a scene with other values by key, ''), or (None, reason) where there is none."""
-    try:
-        scene, cache, requests = varied(*task)
-        found = []
-        for name, arguments in requests:
-            value = evaluate(name, arguments, scene, cache)
-            if not isinstance(value, int | float) or not isfinite(value):
-                raise InputError(f"quantity = {name!r} is no finite real number: {value}")
-            found.append(float(value))
-        return found, ""
-    except InputError as error:
-        return None, str(error)
-
-
-def _finer(
-    tables: dict[str, Any], requests: list[Request], values: dict[str, float]
-) -> tuple[list[Request], list[str]]:
+def _finer(variants: Variants, values: dict[str, float]) -> tuple[Variants, list[str]]:
     """Each quantity on the exact beam where it has that model, else with twice the count; with twice the time steps.
 
     The first that has a value at this point; with a label each, empty where there is no finer model.
     """
-    found, labels = list(requests), [""] * len(requests)
-    for i, (name, arguments) in enumerate(requests):
-        fields = msgspec.structs.fields(QUANTITIES[name].schema)
-        settings = {one.name: one.default for one in fields if not one.required} | arguments
-        model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
-        exact = {key: one for key, one in arguments.items() if key != "count"} | {"model": EXACT}
-        tries = [(exact, EXACT)] if model in MODELS and MODELS[model].sized else []
-        tries += [(arguments | {"count": 2 * count}, f"count = {2 * count}")] if count else []
-        if steps:
-            label = f"{2 * steps} steps a period"
-            tries = [(own | {"steps_per_period": 2 * steps}, f"{text}, {label}") for own, text in tries]
-            tries.append((arguments | {"steps_per_period": 2 * steps}, label))
-        for own, label in tries:
-            if figures_at((tables, [(name, own)], values))[0] is not None:
-                found[i], labels[i] = (name, own), label
+    requests, labels = list(variants.requests), [""] * len(variants.requests)
+    for i, request in enumerate(requests):
+        for arguments, label in _refinements(*request):
+            if replace(variants, requests=[(request[0], arguments)]).row(values, real=True).reason is None:
+                requests[i], labels[i] = (request[0], arguments), label
                 break
-    return found, labels
+    return replace(variants, requests=requests), labels
+
+
+def _refinements(name: str, arguments: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+    """(arguments, label) of a quantity on finer models, the finest first."""
+    fields = msgspec.structs.fields(QUANTITIES[name].schema)
+    settings = {entry.name: entry.default for entry in fields if not entry.required} | arguments
+    model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
+    exact = {key: value for key, value in arguments.items() if key != "count"} | {"model": EXACT}
+    finer = [(exact, EXACT)] if model in MODELS and MODELS[model].sized else []
+    finer += [(arguments | {"count": 2 * count}, f"count = {2 * count}")] if count else []
+    if steps:
+        label, doubled = f"{2 * steps} steps a period", {"steps_per_period": 2 * steps}
+        finer = [(more | doubled, f"{text}, {label}") for more, text in finer]
+        finer.append((arguments | doubled, label))
+    return finer

@@ -6,28 +6,25 @@ them (A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270).
 """
 
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
+from verify.analysis.solution_cache import SolutionCache
+from verify.arrays import Array
 from verify.errors import InputError
 from verify.parallel import completed, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
-from verify.studies.base import Progress, Study
-from verify.studies.optimise import figures_at
-from verify.studies.sweep import plain_tables, quantity_margins, value_at, varied
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from verify.analysis.solution_cache import SolutionCache
-    from verify.arrays import Array
-    from verify.scene.model import Scene
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import unit_symbol
+from verify.studies.tables import Variants
 
 CONFIDENCE = 0.95
 CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling."
+SHARES = "first order", "from", "to", "total", "total from", "total to"
 NOTES = [
     "first order: removed by knowledge of the input alone; total: remains where all others are known.",
     "Intervals: 95 % of the sampling by bootstrap; four times n halves them.",
@@ -73,9 +70,7 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How much of the variance of a quantity each uncertain input causes."""
 
-    name: ClassVar[str] = "sensitivity"
-    title: ClassVar[str] = "Shares of uncertain inputs"
-    devices: ClassVar[bool] = True
+    name, title, devices = "sensitivity", "Shares of uncertain inputs", True
 
     quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
     arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
@@ -84,88 +79,91 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     n: Annotated[int, Meta(ge=16, description="A power of two; n (inputs + 2) values are computed.")] = 256
     seed: Annotated[int, Meta(ge=0, description="Of random numbers.")] = 1
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, argument or key, and for n that is no power of two."""
         if self.n & (self.n - 1):
             raise InputError(f"sensitivity.n = {self.n}: give a power of two, {1 << self.n.bit_length()}")
-        self.medians(plain_tables(scene))
+        self.medians(Variants.of(scene, [(self.quantity, self.arguments)]))
 
-    def medians(self, tables: dict[str, Any]) -> dict[str, float]:
+    def medians(self, variants: Variants) -> dict[str, float]:
         """The median of each input by its key. Raises InputError."""
-        requests = [(self.quantity, self.arguments)]
-        found = {one.key: one.median(value_at(tables, one.key, requests)) for one in self.input}
-        varied(tables, requests, found)
-        if len(found) < len(self.input):
-            raise InputError("sensitivity.input: a key occurs twice, give each once")
-        return found
+        medians = [(uncertain.key, uncertain.median(variants.value(uncertain.key))) for uncertain in self.input]
+        return variants.check("sensitivity.input", medians)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Evaluate the quantity at Saltelli's points with the workers of `parallel`, and estimate the shares.
 
         Raises InputError where it has no value at one of the points.
         """
-        import numpy as np
+        self.check(scene)
+        variants = Variants.of(scene, [(self.quantity, self.arguments)])
+        values, first, total = self._shares(variants, progress)
+        both = values[: 2 * self.n]
+        low, middle, high = np.quantile(both, [0.025, 0.5, 0.975])
+        keys, largest = [uncertain.key for uncertain in self.input], int(np.argmax(total[0]))
+        rows = [
+            (uncertain.key, uncertain.distribution, *map(float, (*first[:, i], *total[:, i])))
+            for i, uncertain in enumerate(self.input)
+        ]
+        columns = [Column("input"), Column("distribution"), *(Column(name, format=".4f") for name in SHARES)]
+        unit = "" if self.logarithm else f" {unit_symbol(QUANTITIES[self.quantity].unit)}".rstrip()
+        what = f"ln |{self.quantity}|" if self.logarithm else self.quantity
+        rivals = [key for i, key in enumerate(keys) if i != largest and total[2, i] > total[1, largest]]
+        unclear = f" (its interval overlaps that of {', '.join(rivals)}: no rank)" if rivals else ""
+        return Result(
+            summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}; "
+            f"{keys[largest]} has the largest share in its variance, {total[0, largest]:.3f}{unclear}.",
+            tables=[Table(f"Shares in the variance of {what}", columns, rows, NOTES)],
+            figures=[Figure("sensitivity-shares", f"Shares in the variance of {what}", CAPTION, partial(_draw, rows))],
+            data={"points": len(values), "mean": both.mean(), "sd": both.std(), "sum of first order": first[0].sum()},
+            margins=variants.margins({}),
+        )
+
+    def _shares(self, variants: Variants, progress: Progress) -> tuple[Array, Array, Array]:
+        """(values of the quantity, first-order and total shares with the ends of their intervals, (3, inputs) each)."""
         from scipy.stats import bootstrap, sobol_indices
 
-        self.check(scene)
-        tables, keys, requests = plain_tables(scene), [one.key for one in self.input], [(self.quantity, self.arguments)]
-        values: list[float] = []
+        keys, values = [uncertain.key for uncertain in self.input], list[float]()
 
-        def quantity(points: "Array") -> "Array":
+        def quantity(points: Array) -> Array:
             """Values at points (inputs, m), which are those of the samples A and B, then of A with columns of B."""
-            tasks: list[Any] = [(tables, requests, dict(zip(keys, map(float, x), strict=True))) for x in points.T]
-            found: dict[int, float] = {}
-            for i, (figures, reason) in completed(figures_at, tasks, executor, first_here=not values):
-                if figures is None or (self.logarithm and figures[0] == 0.0):
-                    at = ", ".join(f"{key} = {value:.6g}" for key, value in tasks[i][2].items())
-                    raise InputError(f"sensitivity: {self.quantity} has no value at {at} ({reason}): reduce sd")
-                found[i] = float(np.log(abs(figures[0]))) if self.logarithm else figures[0]
-                progress(f"sensitivity: {len(values) + len(found)} points")
-            values.extend(found[i] for i in range(len(tasks)))
-            return np.array([values[-len(tasks) :]])
+            at = [dict(zip(keys, map(float, x), strict=True)) for x in points.T]
+            row_at, sizes = partial(variants.row, real=True), dict[int, float]()
+            for i, row in completed(row_at, at, executor, first_here=not values):
+                size = row.values[0]
+                if row.reason is not None or (self.logarithm and size == 0.0):
+                    where = ", ".join(f"{key} = {value:.6g}" for key, value in at[i].items())
+                    reason = row.reason or "its logarithm is infinite"
+                    raise InputError(f"sensitivity: {self.quantity} has no value at {where} ({reason}): reduce sd")
+                sizes[i] = float(np.log(abs(size))) if self.logarithm else size
+                progress(f"sensitivity: {len(values) + len(sizes)} points")
+            values.extend(sizes[i] for i in range(len(at)))
+            return np.array([values[-len(at) :]])
 
-        distributions = [one.around(own) for one, own in zip(self.input, self.medians(tables).values(), strict=True)]
+        medians = self.medians(variants).values()
+        distributions = [uncertain.around(median) for uncertain, median in zip(self.input, medians, strict=True)]
         with workers(self.n) as executor:
             shares = sobol_indices(func=quantity, n=self.n, dists=distributions, rng=self.seed)
-        both, mixed = np.reshape(values[: 2 * self.n], (2, self.n)), np.reshape(values[2 * self.n :], (self.n, -1)).T
-        centre = both.mean()
-        both, mixed = both - centre, mixed - centre
+        samples = np.array(values)
+        samples -= samples[: 2 * self.n].mean()
+        both, mixed = samples[: 2 * self.n].reshape(2, -1), samples[2 * self.n :].reshape(self.n, -1).T
 
-        def estimates(index: "Array", axis: int = -1) -> "Array":
+        def estimates(index: Array, axis: int = -1) -> Array:
             """First-order and total shares of resampled points, (2, inputs, resamples), by Saltelli's estimator."""
             (a, b), ab = both[:, index], mixed[:, index]
             variance = both[:, index].var(axis=(0, -1))
-            shares: Array = np.stack([(b * (ab - a)).mean(axis=-1), 0.5 * ((a - ab) ** 2).mean(axis=-1)]) / variance
-            return shares
+            ratios: Array = np.stack([(b * (ab - a)).mean(axis=-1), 0.5 * ((a - ab) ** 2).mean(axis=-1)]) / variance
+            return ratios
 
         # the bootstrap of `SobolResult` has no seed
         options: Any = {"confidence_level": CONFIDENCE, "method": "percentile", "vectorized": True, "rng": self.seed}
         ends = bootstrap([np.arange(self.n)], estimates, n_resamples=999, batch=32, **options).confidence_interval
-        first, total = np.atleast_1d(shares.first_order), np.atleast_1d(shares.total_order)
-        rows = [
-            (key, own.distribution, *map(float, (first[i], ends.low[0, i], ends.high[0, i])),
-             *map(float, (total[i], ends.low[1, i], ends.high[1, i])))
-            for i, (key, own) in enumerate(zip(keys, self.input, strict=True))
-        ]  # fmt: skip
-        names = ("first order", "from", "to", "total", "total from", "total to")
-        columns = [Column("input"), Column("distribution"), *(Column(name, format=".4f") for name in names)]
-        low, middle, high = (float(one) for one in np.quantile(both, [0.025, 0.5, 0.975]) + centre)
-        unit = "" if (own := QUANTITIES[self.quantity].unit) == "1" or self.logarithm else f" {own}"
-        what, largest = f"ln |{self.quantity}|" if self.logarithm else self.quantity, int(np.argmax(total))
-        at, cache, requests = varied(tables, requests, {})
-        rivals = [key for i, key in enumerate(keys) if i != largest and ends.high[1, i] > ends.low[1, largest]]
-        unclear = f" (its interval overlaps that of {', '.join(rivals)}: no rank)" if rivals else ""
-        return Result(
-            summary=f"{what}: 95 % of its values are between {low:.6g} and {high:.6g}{unit}, median {middle:.6g}; "
-            f"{keys[largest]} has the largest share in its variance, {total[largest]:.3f}{unclear}.",
-            tables=[Table(f"Shares in the variance of {what}", columns, rows, NOTES)],
-            figures=[Figure("sensitivity-shares", f"Shares in the variance of {what}", CAPTION, partial(_draw, rows))],
-            data={"points": len(values), "mean": centre, "sd": both.std(), "sum of first order": first.sum()},
-            margins=quantity_margins(*requests[0], at, cache),
-        )
+        orders = np.atleast_2d(shares.first_order, shares.total_order)
+        first, total = (np.vstack([share, ends.low[i], ends.high[i]]) for i, share in enumerate(orders))
+        return np.array(values), first, total
 
 
-def _draw(rows: list[Any], ax: "Axes") -> None:
+def _draw(rows: list[Any], ax: Axes) -> None:
     """Bars with their intervals."""
     for shift, name, k in ((0.2, "first order", 2), (-0.2, "total", 5)):
         places = [len(rows) - i + shift for i in range(len(rows))]

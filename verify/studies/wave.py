@@ -1,35 +1,35 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-import msgspec
+import numpy as np
 from msgspec import Meta
+from msgspec.structs import replace
 
 from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError, WindowError
-from verify.formatting import unit_of, unit_over
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
+from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
-from verify.studies.base import Progress, Study
-from verify.studies.charts import model_style, plot_lines, si, sized_title
+from verify.studies.base import Axes, Progress, Scene, Study
+from verify.studies.charts import beam_movie, line_chart, model_style, si, sized_title, table
 from verify.studies.convergence import Counts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.axes import Axes
-
     from verify.linear.field import HarmonicField
-    from verify.scene.model import Scene
     from verify.travelling_wave import BestDrive, DrivenCase
 
 Row: TypeAlias = dict[str, Any]
 Fields: TypeAlias = "dict[str, HarmonicField]"
 FRAMES, POINTS = 36, 13
 SURFACE = "#cc3f76"
+WAVES = (
+    "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: of the "
+    "surface at the rms amplitude, against the wave."
+)
 ENVELOPES = (
     "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
     "ends the near field decays."
@@ -43,13 +43,12 @@ MOVIE = (
 class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The steady wave of the scene's drive, measured in the window [L/4, 3L/4]."""
 
-    name: ClassVar[str] = "wave"
-    title: ClassVar[str] = "The driven beam"
+    name, title = "wave", "The driven beam"
 
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
     counts: Annotated[Counts, Meta(description="Of the errors over N; else 1, 2, 4 times count.")] | None = None
 
-    def check(self, scene: "Scene") -> None:
+    def check(self, scene: Scene) -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
         from verify.waves.window import check_span, check_waves, middle_half
 
@@ -65,105 +64,90 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): use quantities or gates "
                 "with a window of their own, and leave a section [wave] out"
             ) from None
-        bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
+        bare = replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():
             for count in filter(None, (self.count, *(self.counts or ()))):
                 model.build(bare, count).check_propagates(frequency)
 
-    def run(self, scene: "Scene", cache: "SolutionCache", progress: Progress) -> "Result":
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Solve the fields of all models. Raises InputError."""
-        import numpy as np
-        from msgspec.structs import replace
-
         from verify.travelling_wave import best_drive
         from verify.waves.driven_case import driven
 
-        drive = scene.drive
-        assert drive is not None
-        exact = driven_case(scene, FieldOptions())
+        assert scene.drive is not None
+        exact, hertz = driven_case(scene, FieldOptions()), scene.drive.frequency_hz
         models = [model.name for model in discrete("harmonic", scene.beam)]
-        n = self.count or sufficient_count(cache, frequency_hz=drive.frequency_hz)
+        n = self.count or sufficient_count(cache, frequency_hz=hertz)
         counts = self.counts or (n, 2 * n, 4 * n)
-        rows: list[Row] = []
-        for model, count in [(EXACT, None), *((model, count) for model in models for count in counts)]:
-            row: Row = {"name": sized_title(model, count), "model": model, "N": count}
-            progress(row["name"])
-            rows.append(row | _waves(replace(exact, model=MODELS[model].build(exact.beam, count)), cache))
-        fields = {EXACT: driven(exact, cache)}
-        for model in models:
-            fields[model] = driven(replace(exact, model=MODELS[model].build(exact.beam, n)), cache)
+        sizes = [(EXACT, None), *((model, count) for model in models for count in counts)]
+        rows = [_waves(exact, model, count, cache, progress) for model, count in sizes]
+        cases = [exact, *(replace(exact, model=MODELS[model].build(exact.beam, n)) for model in models)]
+        fields = {model: driven(case, cache) for model, case in zip((EXACT, *models), cases, strict=True)}
         other = replace(exact, kind="displacement" if exact.kind == "force" and not exact.shunts else "force")
         direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
         against, best = measured(other, cache), best_drive(exact, direction=direction)
         ratio, end = against.standing_wave_ratio, {1: "+x", -1: "-x"}
 
-        columns = [Column("model"), Column("N"), Column("SWR", format=".5g"), Column("axis ratio", format="+.5f")]
-        columns += [si("crest speed", "m/s", "+.5g"), Column("best frequency", "Hz", ".2f")]
-        columns += [Column("SWR there", format=".5g"), Column("axis ratio there", format="+.5f")]
-        columns += [si("crest speed there", "m/s", "+.5g")]
-        columns = columns if (better := any(row["best"] for row in rows)) else columns[:5]
-        notes = [
-            "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: "
-            "of the surface at the rms amplitude, against the wave."
-            + " Right: at its own frequency of least reflection."
-            * better,
-            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
-            f"wave towards {end[against.waves.direction]}.",
-        ]
-        cells = [(MODELS[r["model"]].title, r["N"], *_cells(r["drive"])[1:], *_cells(r["best"])) for r in rows]
-        cells = [row[: len(columns)] for row in cells]
+        margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=hertz)
         size = n if n in counts else max(counts)
-        margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=drive.frequency_hz)
         swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
         exact_swr = rows[0]["drive"]["standing_wave_ratio"]
-        margins += [against_exact("standing-wave ratio", *one, exact_swr) for one in swr.items()]
-        ratios = [f"{name} {value:.5g}" for name, value in swr.items()]
-        x, up, magnified, widest = ellipses(fields["analytic"])
-        paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
-        start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
-        draw_paths = partial(plot_lines, lines=[*paths, start], x=("x", "m"), y=("deflection", "m"))
-        caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
-        at = np.linspace(0.0, scene.beam.length, 601)
-        lines = [(MODELS[m].title, at, abs(field.deflection(at)), model_style(m)) for m, field in fields.items()]
-        draw_envelopes = partial(plot_lines, lines=lines, x=("x", "m"), y=("amplitude", "m"))
-        envelope = marked(f"Envelope of the wave, N = {n}", margins)
+        margins += [against_exact("standing-wave ratio", name, value, exact_swr) for name, value in swr.items()]
+        ratios = ", ".join(f"{name} {value:.5g}" for name, value in swr.items())
         reverse = "" if against.waves.direction == direction else f", against that of {other.kind}s of the same phases"
         reasons: dict[str, list[str]] = {}
         for row in rows:
             reasons.setdefault(row["note"], []).append(row["name"])
-        ratios_of_best = {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg}
+        imposed = (
+            f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
+            f"wave towards {end[against.waves.direction]}."
+        )
         return Result(
             summary=f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
-            f"{drive.frequency_hz:g} Hz in [L/4, 3L/4]: {', '.join(ratios)}.",
-            tables=[
-                Table(f"The wave over N, at {drive.frequency_hz:g} Hz", columns, cells, notes),
-                _drives(best, exact, exact_swr, end[direction]),
-            ],
-            figures=[
-                Figure("wave-envelopes", envelope, ENVELOPES, draw_envelopes),
-                Figure("wave-ellipses", "Surface ellipses along the beam, exact field", caption, draw_paths),
-            ],
+            f"{hertz:g} Hz in [L/4, 3L/4]: {ratios}.",
+            tables=[_over_size(hertz, rows, imposed), _drives(best, exact, exact_swr, end[direction])],
+            figures=[_envelopes(fields, marked(f"Envelope of the wave, N = {n}", margins)), _ellipses(fields[EXACT])],
             movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
-            data={"rows": rows, "other_drive_standing_wave_ratio": ratio, **ratios_of_best},
+            data={"rows": rows, "other_drive_standing_wave_ratio": ratio}
+            | {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg},
             margins=margins,
         )
 
 
-def _waves(case: "DrivenCase", cache: "SolutionCache") -> Row:
-    """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
-    from msgspec.structs import replace
+def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
+    """The wave of each model and size at the drive, and at its own frequency of least reflection where one has it."""
 
+    def read(where: str, name: str) -> Callable[[Row], Any]:
+        return lambda row: row[where][name] if row[where] else None
+
+    def figures(where: str, suffix: str = "") -> dict[Column, Any]:
+        columns = {Column(f"SWR{suffix}", format=".5g"): read(where, "standing_wave_ratio")}
+        columns |= {Column(f"axis ratio{suffix}", format="+.5f"): read(where, "axis_ratio")}
+        return columns | {si(f"crest speed{suffix}", "m/s", "+.5g"): read(where, "crest_speed")}
+
+    columns: dict[Column, Any] = {Column("model"): lambda row: MODELS[row["model"]].title, Column("N"): "N"}
+    columns |= figures("drive")
+    if better := any(row["best"] for row in rows):
+        columns |= {Column("best frequency", "Hz", ".2f"): read("best", "frequency_hz")} | figures("best", " there")
+    notes = WAVES + " Right: at its own frequency of least reflection." * better, imposed
+    return table(f"The wave over N, at {hertz:g} Hz", rows, columns, *notes)
+
+
+def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCache, progress: Progress) -> Row:
+    """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
     from verify.travelling_wave import best_frequency
 
-    row = {"drive": _operation(case, cache), "best": None, "note": ""}
+    progress(name := sized_title(model, count))
+    case = replace(exact, model=MODELS[model].build(exact.beam, count))
+    row = {"name": name, "model": model, "N": count, "drive": _operation(case, cache), "best": None, "note": ""}
     try:
         return row | {"best": _operation(replace(case, frequency_hz=best_frequency(case)), cache)}
     except InputError as error:
         return row | {"note": str(error)}
 
 
-def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
+def _operation(case: "DrivenCase", cache: SolutionCache) -> dict[str, float]:
     wave = measured(case, cache)
     return {
         "frequency_hz": case.frequency_hz,
@@ -173,11 +157,7 @@ def _operation(case: "DrivenCase", cache: "SolutionCache") -> dict[str, float]:
     }
 
 
-def _cells(one: dict[str, float] | None) -> tuple[float | None, ...]:
-    return tuple(one.values()) if one else (None,) * 4
-
-
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> "Table":
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> Table:
     """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end."""
     from verify.waves.operating_point import lead_deg
 
@@ -198,8 +178,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
     metres, that magnification, largest true ratio of width to height).
     """
-    import numpy as np
-
     from verify.travelling_wave import surface_motion
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
@@ -211,32 +189,34 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     return places[:, None] + magnified * along, up, magnified, float(ratio.max())
 
 
-def _movie(fields: Fields, count: int) -> "Callable[[Axes], Any]":
-    def set_up(ax: "Axes") -> Any:
-        import numpy as np
+def _envelopes(fields: Fields, title: str) -> Figure:
+    """Amplitude over the beam on each model."""
+    x = np.linspace(0.0, fields[EXACT].beam.length, 601)
+    lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
+    return line_chart("wave-envelopes", title, ENVELOPES, lines, ("x", "m"), ("amplitude", "m"))
 
-        exact = fields["analytic"]
-        x_surface, height, *_ = ellipses(exact)
-        places = {m: np.linspace(0.0, exact.beam.length, (count if MODELS[m].sized else 160) + 1) for m in fields}
-        waves = {model: field.deflection(places[model]) for model, field in fields.items()}
-        along, up = unit_of(exact.beam.length), unit_over(float(abs(wave).max()) for wave in waves.values())
-        top = 1.15 * up.factor * max(float(abs(wave).max()) for wave in waves.values())
-        lines = {}
-        for model, x in places.items():
-            style = {"analytic": "-", "segment": "-o"}.get(model, "x")
-            (lines[model],) = ax.plot(along.factor * x, 0.0 * x, style, markersize=3.0, **model_style(model))
-            lines[model].set_label(MODELS[model].title)
-        (points,) = ax.plot([], [], "o", color=SURFACE, label="surface points")
-        ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}", ylim=(-top, top))
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
 
-        def update(frame: int) -> list[Any]:
-            turn = np.exp(2j * np.pi * frame / FRAMES)
-            for model, line in lines.items():
-                line.set_ydata(up.factor * (waves[model] * turn).real)
-            points.set_data(along.factor * x_surface[:, frame], up.factor * height[:, frame])
-            return [*lines.values(), points]
+def _ellipses(field: "HarmonicField") -> Figure:
+    """Paths of surface points."""
+    x, up, magnified, widest = ellipses(field)
+    paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
+    start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
+    caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
+    title = "Surface ellipses along the beam, exact field"
+    return line_chart("wave-ellipses", title, caption, [*paths, start], ("x", "m"), ("deflection", "m"))
 
-        return update, range(FRAMES)
 
-    return set_up
+def _movie(fields: Fields, count: int) -> Callable[[Axes], Any]:
+    """The beam on each model, and surface points of the exact beam, over a period."""
+    turn = np.exp(2j * np.pi * np.arange(FRAMES) / FRAMES)[:, None]
+    length, (x_surface, height, *_) = fields[EXACT].beam.length, ellipses(fields[EXACT])
+    lines, largest = list[MovingLine](), 0.0
+    for model, field in fields.items():
+        x = np.linspace(0.0, length, (count if MODELS[model].sized else 160) + 1)
+        wave = field.deflection(x)
+        largest = max(largest, float(abs(wave).max()))
+        form = {"analytic": "-", "segment": "-o"}.get(model, "x")
+        style = {"markersize": 3.0, "label": MODELS[model].title} | model_style(model)
+        lines.append((x, (wave * turn).real, form, style))
+    lines.append((x_surface.T, height.T, "o", {"color": SURFACE, "label": "surface points"}))
+    return beam_movie(lines, length, largest, [""] * FRAMES)
