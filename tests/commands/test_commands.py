@@ -67,6 +67,14 @@ def test_every_command_has_help(call, name):
     assert out.startswith(f"Usage: verify {name}")
 
 
+@pytest.mark.parametrize("name", ["chain", "choose", "compare", "export", "measure", "sweep", "table"])
+def test_a_command_alone_shows_one_that_works(call, name):
+    status, out, err = call(name)
+    assert (status, out) == (2, "")
+    assert f"Usage: verify {name}" in err
+    assert f"for example: verify {name} " in err
+
+
 REFUSED = [
     ("runn", "No such command"),
     ("measure bare.toml", "Missing argument 'QUANTITY'"),

@@ -1,8 +1,10 @@
 """What commands share: options of one name, a result on standard output, progress on the error stream."""
 
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +40,10 @@ class BeamCommand(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Insert the phrase in front, as the name of the scene or after the option."""
-        for word, following in zip(args, [*args[1:], ""], strict=True):
+        if not args and any(parameter.required for parameter in self.params):
+            examples = re.findall("Example: `([^`]+)`", " ".join((self.help or "").split()))
+            ctx.fail(f"Missing arguments, for example: {examples[0]}")
+        for word, following in pairwise([*args, ""]):
             name, _, phrase = word.partition("=")
             if name == "--beam":
                 option = [x.opts[0] for x in self.params if x.name == "scene" and isinstance(x, click.Option)]
