@@ -148,6 +148,15 @@ def test_shares_of_a_product_of_powers_equal_the_closed_form(renders):
     renders(result)
 
 
+def test_one_input_causes_all_of_the_variance():
+    spread = (Input(key="beam.thickness", distribution="lognormal", sd=0.02),)
+    study = Sensitivity(quantity="mode.frequency", arguments=FUNDAMENTAL, logarithm=True, input=spread, n=512)
+    result = study.run(PAPER, SolutionCache(PAPER.beam), lambda step: None)
+    (row,) = result.tables[0].records()
+    assert row["total"] == row["first order"] == 1.0
+    assert result.data["sd"] == pytest.approx(0.02, rel=0.08)  # of 1024 random points: 3.5 standard errors
+
+
 def test_an_interaction_has_a_total_share_above_its_first_order():
     """Two forces a distance apart: neither amplitude alone decides the reflection."""
     inputs = (

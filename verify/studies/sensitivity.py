@@ -143,6 +143,9 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         medians = self.medians(variants).values()
         distributions = [uncertain.around(median) for uncertain, median in zip(self.input, medians, strict=True)]
         with workers(self.n) as executor:
+            if len(distributions) == 1:  # causes all of the variance; `sobol_indices` takes two or more
+                quantity(distributions[0].rvs((1, 2 * self.n), random_state=self.seed))
+                return np.array(values), np.ones((3, 1)), np.ones((3, 1))
             shares = sobol_indices(func=quantity, n=self.n, dists=distributions, rng=self.seed)
         samples = np.array(values)
         samples -= samples[: 2 * self.n].mean()
