@@ -115,6 +115,9 @@ def main() -> NoReturn:
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     os.environ.setdefault("VERIFY_JOBS", str(os.cpu_count() or 1))
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by the caller, as for jobs without a terminal
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # until the process ends
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -97,13 +97,25 @@ def test_interrupt_is_status_130(capsys, monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX")
-def test_broken_pipe_is_status_141():
+@pytest.mark.parametrize(
+    "line", ["scenes show paper", "measure paper mode.frequency model=analytic mode=1", "run bare.toml"]
+)
+def test_broken_pipe_is_status_141(line):
     reading, writing = os.pipe()
     os.close(reading)
-    done = subprocess.run([*VERIFY, "scenes", "show", "paper"], stdout=writing, stderr=subprocess.PIPE, check=False)
+    done = subprocess.run([*VERIFY, *line.split()], stdout=writing, stderr=subprocess.PIPE, check=False)
     os.close(writing)
     assert done.returncode == 141
     assert done.stderr == b""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="streams of POSIX")
+@pytest.mark.parametrize(
+    ("line", "status"), [("measure paper mode.frequency model=analytic mode=1", 0), ("measure paper nosuch", 2)]
+)
+def test_closed_streams_change_no_status(line, status):
+    done = subprocess.run(["sh", "-c", '"$@" >&- 2>&-', "sh", *VERIFY, *line.split()], check=False)
+    assert done.returncode == status
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")

@@ -128,8 +128,13 @@ def console() -> "Console":
     """Standard output for rich: as wide as the terminal, 100 columns where it is none, without markup."""
     from rich.console import Console
 
+    class Output(Console):
+        def on_broken_pipe(self) -> None:
+            """Leave a closed pipe to `cli`: rich would exit with the status of a failed gate."""
+            raise BrokenPipeError
+
     width = None if sys.stdout.isatty() else 100
-    return Console(file=sys.stdout, markup=False, highlight=False, emoji=False, width=width)
+    return Output(file=sys.stdout, markup=False, highlight=False, emoji=False, width=width)
 
 
 @contextmanager
