@@ -1,5 +1,7 @@
-"""Numba options of all kernels: `jit` for a kernel called from Python, `inline` for one called by kernels alone.
+"""Numba options of all kernels: `jit` for a kernel called from Python, `inline` and `once` for those called by kernels.
 
+Numba optimises a function again in each of its callers, and compiles it again for every constant integer or truth value
+among its arguments. So `once` stands where one place calls a function, and kernels pass such values in variables.
 Kernels allocate nothing, so numba's reference counting is off (`_nrt`), which doubles the speed of a motor run.
 
 Numba's cache checks the file of the entry point alone, while all that it calls is compiled into it. So the name of the
@@ -17,7 +19,10 @@ from numba import config, njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PACKAGE = Path(__file__).parent
-_NAMES = ("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py", "contact/*.py", "dynamics/*.py")
+_NAMES = (
+    *("*/*kernels.py", "chain/*_links.py", "chain/runge_kutta.py", "contact/*.py", "dynamics/*.py"),
+    "engines/slider.py",
+)
 _SOURCES = sorted({Path(__file__), *(source for name in _NAMES for source in _PACKAGE.glob(name))})
 _DIGEST = sha256(b"".join(source.read_bytes() for source in _SOURCES)).hexdigest()[:16]
 _CACHE = Path(config.CACHE_DIR or _PACKAGE / "__pycache__") / f"kernels-{_DIGEST}"  # type: ignore[attr-defined]
@@ -36,7 +41,7 @@ def inline(function: Any = None, **options: Any) -> Any:
 
 
 def once(function: Function) -> Function:
-    """Compile a function into the single place that calls it."""
+    """Compile a function as part of the single place that calls it, with the options of that place."""
     options: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "inline": "always"}
     compiled: Function = njit(**options)(function)
     return compiled
