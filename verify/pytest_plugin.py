@@ -6,6 +6,7 @@ Loaded by pytest in every project where this package is installed, so it imports
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from warnings import warn
 
 import pytest
 
@@ -68,6 +69,7 @@ class GateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Evaluate the gate; its values become JUnit properties whether it passes or not."""
+        from verify.analysis.verdict import verdict_of
         from verify.report.summary import expected
         from verify.scene.run import run_gate
 
@@ -77,7 +79,11 @@ class GateItem(pytest.Item):
         values = {"measured": result.value, "expected": band, "unit": result.unit}
         values["fraction"] = "" if result.fraction is None else f"{result.fraction:.6g}"
         values["seconds"] = f"{result.seconds:.6g}"
+        void = verdict_of(result.margins).headline if result.margins else ""
+        values |= {"verdict": void} if void else {}
         self.user_properties += [(name, str(value)) for name, value in values.items()]
+        if void:
+            warn(pytest.PytestWarning(f"gate {result.id}: {void}"), stacklevel=1)
         if not result.passed:
             raise GateFailedError(f"gate {result.id}: {result.reason} (expected {band}{unit}; {self.gate.why})")
 

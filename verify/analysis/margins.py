@@ -1,40 +1,79 @@
-"""Margins: the sizes of the effects that a result neglects, from beam, model, count, and mode or drive.
+"""Margins: the sizes of the effects that a result neglects, from beam, model, count, mode or drive, slider and runs.
 
-Discretisation, shear and rotary inertia, bending across the width, cut-off of the parts, sag and slope under sliders,
-one-way coupling, lift-off, convergence and linearity; `verdict` derives the level from them.
+Units, linearity, sag and slope under sliders, one-way coupling, lift-off, convergence, shear and rotary inertia,
+bending across the width, discretisation and cut-off of the parts; `verdict` derives the level from them.
 """
 
 from bisect import bisect_left
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from math import asinh, inf, pi, sinh
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from verify.analysis.plausibility import unit_margins
 from verify.analysis.solution_cache import EULER, Settings, SolutionCache, theory_of
 from verify.analysis.variants import Variant
-from verify.analysis.verdict import FINE, LESS, MORE, Margin, per_cent, three_digits, void
+from verify.analysis.verdict import FINE, LESS, LIMIT, MORE, Margin, per_cent, three_digits, void
 from verify.errors import InputError
 from verify.exact.closed_forms import theory_ratio, wavenumber_length
 from verify.exact.error_laws import LAWS, error_at
 from verify.exact.plate import FLATNESS, plate_error, stiffening
 from verify.formatting import with_unit
 from verify.linear.registry import EXACT, MODELS, discrete
+from verify.problem.beam import PointForce
 
 if TYPE_CHECKING:
     from verify.dynamics.result import Motion
     from verify.linear.field import HarmonicField
     from verify.problem.slider import Slider
 
+SHEAR = "shear and rotary inertia"
 MOST_PLATES = 60
 """Mode up to which the plate effect is that of the mode, about 0.1 s each, and beyond it of its wave."""
 SLOPE = 0.1, 0.3
 """Slopes up to which linear theory is trusted, and trusted under a condition: their squares are relative lengths."""
 OFF = 0.05
 """Discretisation error from which a chart is marked."""
+WAYPOINTS = 9
+"""Positions of a moving slider whose sag is computed: eight parts miss a thirtieth of the largest sag at most."""
 STILL = 1e-4
 """Frequency of a static load over the first natural frequency: the dynamic part is its square."""
+
+
+def result_margins(
+    cache: SolutionCache,
+    sizes: Sequence[tuple[str, int | None]] = (),
+    *,
+    mode: int | None = None,
+    frequency_hz: float | None = None,
+    settings: Settings = (),
+    field: "HarmonicField | None" = None,
+    slider: "Slider | None" = None,
+    runs: "Sequence[tuple[str, Motion]]" = (),
+    path: float = 0.0,
+    amplitude: float | None = None,
+    steady: bool = False,
+) -> list[Margin]:
+    """All margins of a result, whoever prints it.
+
+    Those of the beam (see `beam_margins`) at `mode` or at the wave of `frequency_hz`, of the steady motion `field`
+    under the drive, of the slider's sag along its way, and of the runs, each with the title of its model. The way is
+    that of the runs, without any `path` from the start, m. `amplitude` is that of the wave under the slider, m;
+    `steady` says whether the result has a choice of the beam theory.
+    """
+    found, beam = unit_margins(cache.beam), cache.beam
+    if field is not None:
+        found += linearity_margins("the drive", field, "drive it less")
+    if slider is not None:
+        start = slider.initial_position(beam)
+        moved = [float(x) for _, run in runs for x in run.position.ravel()] or [start + path]
+        found += sag_margins(cache, slider, amplitude, [start, *moved])
+        found += [margin for title, run in runs for margin in run_margins(run, slider, title)]
+    if mode or frequency_hz:
+        found += beam_margins(cache, sizes, mode=mode, frequency_hz=frequency_hz, settings=settings, steady=steady)
+    return found
 
 
 def beam_margins(
@@ -44,15 +83,18 @@ def beam_margins(
     mode: int | None = None,
     frequency_hz: float | None = None,
     settings: Settings = (),
+    steady: bool = False,
 ) -> list[Margin]:
     """Margins of a beam and its models (name, count) at a mode, or at the wave of a frequency, Hz; give one of the two.
 
     Discretisation at a mode is the solved error against the exact beam, at a wave the error of the dispersion at its
-    wavenumber. Raises InputError for a mode that the exact beam does not have.
+    wavenumber. `steady`: whether another theory may be chosen at a wave. Raises InputError for a mode that the exact
+    beam does not have.
     """
     beam, where = cache.beam, f"at mode {mode}" if mode else f"at {frequency_hz:g} Hz"
     k = _wavenumber(cache, mode, frequency_hz)
-    found = [_discretisation(cache, model, n, mode, frequency_hz or 0.0, settings, where) for model, n in sizes if n]
+    found = unit_margins(beam)
+    found += [_discretisation(cache, model, n, mode, frequency_hz or 0.0, settings, where) for model, n in sizes if n]
     if k is None:
         return found
     if theory_of(settings) == EULER:
@@ -60,12 +102,13 @@ def beam_margins(
             left_out = "shear, rotary inertia and bending across the width may be left out, unknown without a shape"
             unknown = Margin(name="beam theory", size=0.0, fine=-1.0, condition=left_out, where=where, is_error=False)
             return [*found, unknown]
-        size, name = 1.0 - theory_ratio(beam.base_section, k), "shear and rotary inertia"
+        size, name = 1.0 - theory_ratio(beam.base_section, k), SHEAR
         if mode:
             with suppress(InputError):
                 size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)
         tune = "retune the drive by wave.best_frequency theory=timoshenko, or use a thinner beam"
-        found.append(Margin(name=name, size=size, where=where, remedy="use theory = 'timoshenko'" if mode else tune))
+        remedy = "use theory = 'timoshenko'" if mode or steady else tune
+        found.append(Margin(name=name, size=size, where=where, remedy=remedy))
     width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
     if width and beam.thickness and width >= FLATNESS * beam.thickness:  # a strip
         size, half = stiffening(0.5 * k * width, beam.poissons_ratio), pi / k
@@ -91,8 +134,8 @@ def _against_spacing(margin: Margin, spacing: float) -> Margin:
     if not margin.is_error or margin.size <= limit:
         return replace(margin, limit=limit, fine=min(margin.fine, limit)) if margin.is_error else margin
     failure = (
-        f"{margin.name} changes frequencies by {per_cent(margin.size)} {margin.where}, where modes are "
-        f"{per_cent(spacing)} apart: the wave may be a standing one or travel the other way"
+        f"{margin.name} change{'s' * (margin.name != SHEAR)} frequencies by {per_cent(margin.size)} {margin.where}, "
+        f"where modes are {per_cent(spacing)} apart: the wave may be a standing one or travel the other way"
     )
     return replace(margin, limit=limit, fine=min(margin.fine, limit), failure=margin.failure or failure)
 
@@ -115,7 +158,7 @@ def _discretisation(
     try:
         if mode is None:
             MODELS[model].build(beam, count).check_propagates(hertz)
-        if k is not None and beam.uniform and model in LAWS:
+        if k is not None and beam.uniform and model in LAWS and theory_of(settings) == EULER:
             error = error_at(model, beam, k * beam.length / count, count)
         else:
             error = cache.frequency_error(model, count, mode or _mode_above(cache, hertz), settings)
@@ -133,6 +176,7 @@ def _discretisation(
         condition=f"{title} may lie too {side}",
         failure=f"{title} are {per_cent(error)} too {side} {where}",
         remedy=remedy,
+        harm="discretisation",
     )
 
 
@@ -169,10 +213,13 @@ def sufficient_count(
     return max(last + 1, first)
 
 
-def against_exact(what: str, model: str, value: float, exact: float, rounding: float = 0.0) -> Margin:
+def against_exact(
+    what: str, model: str, value: float, exact: float, rounding: float = 0.0, finer: Mapping[str, float] | None = None
+) -> Margin:
     """Difference from the exact beam, which answers up to 100 %: large near a resonance at a small frequency error.
 
-    Values that differ by up to `rounding` are equal.
+    Values that differ by up to `rounding` are equal. `finer` has the values of larger sizes by title: where none is
+    half as far off, more parts are no remedy.
     """
     size = 0.0 if abs(value - exact) <= rounding else abs(value / exact - 1.0) if exact else inf
     off, limit = f"{what} of {model} is off by {per_cent(size)}", inf if size <= 1.0 else 1.0
@@ -182,8 +229,20 @@ def against_exact(what: str, model: str, value: float, exact: float, rounding: f
         limit=limit,
         condition=f"the exact beam answers: {off}",
         failure=f"{off} of the exact beam's",
-        remedy=f"give more than {model}",
+        remedy=_finer(model, size, exact, finer or {}),
+        harm="discretisation",
     )
+
+
+def _finer(model: str, size: float, exact: float, finer: Mapping[str, float]) -> str:
+    """The size that helps, the first within 10 % or the best; a loss factor near a resonance, where none does."""
+    off = {title: abs(value / exact - 1.0) if exact else inf for title, value in finer.items()}
+    if not off:
+        return f"give more than {model}"
+    best = next((title for title, one in off.items() if one <= LIMIT), min(off, key=lambda title: off[title]))
+    if off[best] < 0.5 * size:
+        return f"give more: {best} are off by {per_cent(off[best])}"
+    return f"more do not help ({best} are off by {per_cent(off[best])}): drive off the resonance, or give a loss_factor"
 
 
 def marked(title: str, margins: Iterable[Margin]) -> str:
@@ -222,7 +281,7 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
             failure=failure,
             remedy=remedy,
             is_error=False,
-            leads=True,
+            harm="premise",
         )
     ]
     known = all(piece.youngs_modulus and piece.area for piece in beam.pieces)
@@ -233,46 +292,47 @@ def linearity_margins(what: str, field: "HarmonicField", remedy: str, *, static:
         ratio = float(axial * np.trapezoid(tilt**2, x) ** 2 / (2.0 * beam.length * energy))
         c = 2.0 / (3.0 * ratio) ** 0.5 * sinh(asinh(1.5 * (3.0 * ratio) ** 0.5) / 3.0)
         size = ratio * c**2 if static else (1.0 + 0.75 * ratio) ** 0.5 - 1.0
-        effect = f"{bends}, {per_cent(size)} {'too much' if static else 'in frequency'}"
+        much = f"{per_cent(size)} {'too much' if static else 'in frequency'}"
         found.append(
             Margin(
                 name="stretching under " + what,
                 size=size,
                 limit=1.0,
                 is_error=False,
-                leads=True,
+                harm="premise",
                 remedy=remedy,
-                condition=f"an end may slide along the beam (otherwise {effect})",
-                failure=f"{effect} unless an end slides along it",
+                condition=f"an end may slide along the beam (otherwise {bends}, {much})",
+                failure=f"{failure}, {much} unless an end slides along it",
             )
         )
     return found
 
 
-def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None = None) -> list[Margin]:
+def sag_margins(
+    cache: SolutionCache, slider: "Slider", amplitude: float | None = None, places: Sequence[float] = ()
+) -> list[Margin]:
     """Static sag of the beam under a slider's weight and preload: its slope, stretching, and curvature under feet.
 
-    The curvature counts over `amplitude` of the wave, m, and only with one-way coupling, which neglects it. Empty for a
+    At the worst of the positions between the least and the largest of `places`, m, by default at the start. The
+    curvature counts over `amplitude` of the wave, m, and only with one-way coupling, which neglects it. Empty for a
     beam with rigid-body motions and for sliders without load.
     """
-    from verify.problem.beam import PointForce
-
     beam, start = cache.beam, slider.initial_position(cache.beam)
-    loads = [
-        PointForce(position=min(max(start + foot.offset, 0.0), beam.length), amplitude=size)
-        for foot in slider.feet
-        if not foot.mirrored and (size := slider.static_normal_force(foot) * (1.0 if foot.face == "lower" else -1.0))
-    ]
-    if beam.rigid_motions or not loads:
+    first, last = (min(max(one(places), 0.0), beam.length) if places else start for one in (min, max))
+    steps = WAYPOINTS if last - first > 0.01 * beam.length else 1
+    positions = [first + (last - first) * i / (steps - 1) for i in range(steps)] if steps > 1 else [start]
+    if beam.rigid_motions:
         return []
     try:
-        still = MODELS[EXACT].build(beam).harmonic(loads, STILL * cache.exact_hz(1))
+        model, hertz = MODELS[EXACT].build(beam), STILL * cache.exact_hz(1)
+        fields = [model.harmonic(loads, hertz) for x in positions if (loads := _weights(slider, x, beam.length))]
     except InputError:
         return []
     what = "the preload" if slider.preload else "the slider's weight"
-    found = linearity_margins(what, still, LESS, static=True)
-    if amplitude and slider.coupling == "one-way":
-        bent = max(abs(still.derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
+    each = [linearity_margins(what, field, LESS, static=True) for field in fields]
+    found = max(each, key=lambda margins: margins[0].size, default=[])
+    if fields and amplitude and slider.coupling == "one-way":
+        bent = max(abs(fields[0].derivative(start + foot.offset, 2)[0]) * foot.length**2 / 8.0 for foot in slider.feet)
         found.append(
             Margin(
                 name="sag under a foot relative to the wave's amplitude",
@@ -281,6 +341,15 @@ def sag_margins(cache: SolutionCache, slider: "Slider", amplitude: float | None 
             )
         )
     return found
+
+
+def _weights(slider: "Slider", x: float, length: float) -> "list[PointForce]":
+    """Static forces of a slider at x on the beam, N."""
+    return [
+        PointForce(position=min(max(x + foot.offset, 0.0), length), amplitude=size)
+        for foot in slider.feet
+        if not foot.mirrored and (size := slider.static_normal_force(foot) * (1.0 if foot.face == "lower" else -1.0))
+    ]
 
 
 def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
@@ -318,15 +387,23 @@ def run_margins(run: "Motion", slider: "Slider", title: str) -> list[Margin]:
         Margin(name="axial inertia of the links", size=margins.nonlinearity, remedy="drive it less"),
         Margin(
             name="time step",
+            harm="discretisation",
             size=change,
             fine=CONVERGED,
             limit=CONVERGED,
             failure=failure,
             remedy="give a shorter step, or a shorter time",
         ),
-        Margin(name="contact forces that did not converge", size=missed, limit=FINE, remedy="raise steps_per_period"),
+        Margin(
+            name="contact forces that did not converge",
+            size=missed,
+            limit=FINE,
+            remedy="raise steps_per_period",
+            harm="discretisation",
+        ),
         Margin(
             name="time steps in a period of the contact",
+            harm="discretisation",
             size=margins.contact_step**2 / 24.0,
             remedy="raise steps_per_period",
         ),

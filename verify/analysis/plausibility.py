@@ -2,7 +2,7 @@
 
 from math import pi, sqrt
 
-from verify.analysis.verdict import Margin, void
+from verify.analysis.verdict import Margin, three_digits, void
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
 
@@ -44,7 +44,7 @@ def _material(beam: Beam) -> tuple[str, str] | None:
         speed, values = sqrt(piece.youngs_modulus / density), f"beam.density = {density:.6g} kg/m³"
         if not SOUND[0] <= speed <= SOUND[1]:
             both = f"beam.youngs_modulus = {piece.youngs_modulus:.6g} Pa and {values}"
-            sound = f"a speed of sound of {speed:.3g} m/s, in solids it is {SOUND[0]:g} to {SOUND[1]:g} m/s"
+            sound = f"a speed of sound of {three_digits(speed)} m/s, in solids it is {SOUND[0]:g} to {SOUND[1]:g} m/s"
             return f"{both} give {sound}", "pascals and kg/m³: 206 GPa is 206e9, 7.85 g/cm³ is 7850"
         if density > MAX_DENSITY:
             return f"{values} is above that of any solid", "kg/m³: 7.85 g/cm³ is 7850"
@@ -75,7 +75,7 @@ def _wave(beam: Beam) -> tuple[str, str] | None:
     if beam.youngs_modulus is not None:
         remedy = "metres: 137 mm is 0.137"
     if speed > SOUND[1]:
-        return f"bending waves of mode 1 travel at {speed:.3g} m/s, faster than sound in any solid", remedy
+        return f"bending waves of mode 1 travel at {three_digits(speed)} m/s, faster than sound in any solid", remedy
     held = beam.tension > 0.0 or beam.foundation or beam.spring
     if not held and (speed < SLOWEST or hertz < LOWEST):
         return f"a beam of {beam.length:.3g} m has a first frequency of {hertz:.2g} Hz", remedy
@@ -93,9 +93,9 @@ def _weight(beam: Beam) -> tuple[str, str] | None:
     free = not (hollow or beam.tension > 0.0 or beam.foundation or beam.spring)
     soft = GRAVITY / ((2.0 * pi * _frequency(beam)) ** 2 * beam.length)
     if mass > MAX_MASS or (mass > MAX_SOLID and structural and slender and not hollow):
-        why = f"a mass of {1e-3 * mass:.3g} t"
+        why = f"a mass of {three_digits(1e-3 * mass)} t"
     elif free and mass > HEAVY and soft > SOFT:
-        why = f"a mass of {1e-3 * mass:.3g} t at a first frequency of {_frequency(beam):.2g} Hz"
+        why = f"a mass of {three_digits(1e-3 * mass)} t at a first frequency of {_frequency(beam):.2g} Hz"
     else:
         return None
     return f"a beam of {beam.length:.3g} m x {2.0 * piece.extreme_fibre:.3g} m has {why}", "metres: 137 mm is 0.137"

@@ -12,6 +12,10 @@ COLOURS: dict[Level, str] = {"trusted": "green", "conditional": "yellow", "not t
 LEVELS: tuple[Level, ...] = tuple(COLOURS)
 FINE, LIMIT = 0.01, 0.10
 """Relative errors up to which a result is trusted, and trusted under a condition."""
+Harm: TypeAlias = Literal["premise", "void", "model form", "discretisation", "rounding"]
+HARMS: tuple[Harm, ...] = ("premise", "void", "model form", "discretisation", "rounding")
+"""What a margin leaves out, in the order of harm: what all results rest on (units, linear theory), a result that does
+not exist, the physics of the model, its sizes and steps, its arithmetic. The first not trusted explains the others."""
 LESS, OPEN = "press it less, or stiffen the beam", "model its contact by [slider.contact]"
 MORE = f"press it more, or {OPEN}"  # contradicts LESS: OPEN remains
 
@@ -37,8 +41,8 @@ class Margin(msgspec.Struct, frozen=True, kw_only=True):
     """What to change: 'give 60 segments or more'."""
     is_error: bool = True
     """Whether the size is an error of the result, which 'trusted to' names; otherwise a fraction of a limit."""
-    leads: bool = False
-    """Whether it voids the others where it is not trusted, and precedes them whatever their size."""
+    harm: Harm = "model form"
+    """Its kind, whose order precedes the sizes of margins that are not trusted."""
 
     @property
     def level(self) -> Level:
@@ -79,7 +83,7 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def verdict_of(margins: Iterable[Margin]) -> Verdict:
-    """The verdict by the worst margin, by level, then by size over limit; of like ones the worst, without size none."""
+    """The verdict by the worst margin: by level, then harm, then size over limit; of like ones the worst."""
     worst_of = {(one.name, one.where): one for one in sorted(margins, key=badness)}
     sized = (one for one in worst_of.values() if one.size or one.level != "trusted")
     ordered = sorted(sized, key=badness, reverse=True)
@@ -106,7 +110,8 @@ def verdict_of(margins: Iterable[Margin]) -> Verdict:
 
 def void(name: str, failure: str, remedy: str = "", *, leads: bool = False) -> Margin:
     """The margin of a result that does not exist: not converged, diverged, left the beam."""
-    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy, leads=leads)
+    harm: Harm = "premise" if leads else "void"
+    return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy, harm=harm)
 
 
 def three_digits(value: float) -> str:
@@ -122,7 +127,8 @@ def per_cent(ratio: float) -> str:
     return f"{float(f'{value:.2g}'):.0f} %" if 100.0 <= value < 1e5 else f"{value:.2g} %"
 
 
-def badness(margin: Margin) -> tuple[int, bool, float]:
+def badness(margin: Margin) -> tuple[int, int, float]:
     """Key of an order with the worst margin last."""
     share = margin.size / margin.limit if margin.size == margin.size else float("inf")
-    return LEVELS.index(margin.level), margin.leads and margin.level == "not trusted", share
+    first = -HARMS.index(margin.harm) if margin.level == "not trusted" else 0
+    return LEVELS.index(margin.level), first, share

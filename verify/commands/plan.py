@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from verify.analysis.plausibility import unit_margins
 from verify.commands.shared import format_options, overrides_option, scene_argument, show
 from verify.report.result import Column, Result, Table
 from verify.scene.load import load_scene
@@ -25,4 +26,4 @@ def plan(scene: str, overrides: tuple[str, ...], **formats: Any) -> None:
     table = Table("", [Column("what"), Column("kind"), Column("runs"), Column("quantity, or why skipped")], rows)
     skipped = sum(not row[2] for row in rows)
     summary = f"{len(rows) - skipped} parts run, {skipped} are skipped."
-    show(Result(summary, [table], warnings=scene_warnings(loaded)), **formats)
+    show(Result(summary, [table], warnings=scene_warnings(loaded), margins=unit_margins(loaded.beam)), **formats)

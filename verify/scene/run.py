@@ -1,7 +1,6 @@
 """A scene run: every gate and study once, over one solution cache; a gate alone; what a run would do, unsolved."""
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from math import hypot, isfinite
 from pathlib import Path
 from time import perf_counter
@@ -9,18 +8,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
 
-from verify.analysis.margins import linearity_margins, sag_margins
 from verify.analysis.solution_cache import Bracket, SolutionCache
-from verify.analysis.verdict import Margin, Verdict, verdict_of, void
+from verify.analysis.verdict import HARMS, Margin, Verdict, verdict_of, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError, raise_all
 from verify.quantities.base import QUANTITIES, evaluate
-from verify.quantities.waves import FieldOptions, driven_case
 from verify.scene.load import load_scene, study_errors
 from verify.scene.model import Complex, Gate, Scene
 from verify.scene.warnings import scene_warnings
 from verify.studies.base import STUDIES, result_of, studies_of
-from verify.waves.driven_case import driven
+from verify.studies.tables import quantity_margins, scene_margins
 
 if TYPE_CHECKING:
     from verify.report.result import Result
@@ -40,6 +37,8 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     """Fraction of the tolerance: 0 in the middle of the band, 1 at its edge; None where the band has no width."""
     reason: str = ""  # why it failed or was skipped
     seconds: float = 0.0
+    margins: tuple[Margin, ...] = ()
+    """What voids the value; the errors of the model are a matter of the tolerance."""
 
     @property
     def id(self) -> str:
@@ -68,9 +67,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""
     warnings: tuple[str, ...]
-    """Implausible units and gates."""
+    """Implausible gates."""
     margins: tuple[Margin, ...] = ()
-    """Linear theory under the drive and under the weight of the slider."""
+    """Units, linear theory under the drive and under the weight of the slider."""
     seconds: float
 
     @property
@@ -96,7 +95,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def verdict(self) -> Verdict:
         """The worst of all studies, of linear theory under the drive, and of the gates."""
-        margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
+        margins = [*self.margins, *(margin for gate in self.gates for margin in gate.margins)]
+        margins += [margin for result in self.results.values() for margin in result.margins]
         judged = any(gate.passed is not None for gate in self.gates)
         if self.failed:
             failed = ", ".join(result.id for result in self.failed)
@@ -139,7 +139,7 @@ def run_scene(
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
         warnings=scene_warnings(loaded),
-        margins=_margins(loaded, cache),
+        margins=tuple(scene_margins(loaded, cache, slider=loaded.slider)),
         seconds=perf_counter() - start,
     )
 
@@ -186,32 +186,23 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
     return skip
 
 
-def _margins(scene: Scene, cache: SolutionCache) -> tuple[Margin, ...]:
-    """Margins of the exact steady motion; none without a drive and at a resonance."""
-    margins = sag_margins(cache, scene.slider) if scene.slider else []
-    if scene.forces:
-        with suppress(InputError):
-            field = driven(driven_case(scene, FieldOptions()), cache)
-            margins += linearity_margins("the drive", field, "drive it less")
-    return tuple(margins)
-
-
 def run_gate(gate: Gate, scene: Scene, cache: SolutionCache) -> GateResult:
     """Evaluate one gate. Never raises: a gate that cannot be evaluated fails with the reason."""
-    start = perf_counter()
-    unit, value, fraction = "", None, None
+    start, before = perf_counter(), {*cache.motions, *cache.motors}
+    unit, value, fraction, margins = "", None, None, tuple[Margin, ...]()
     try:
         unit = QUANTITIES.named(gate.quantity).unit_of(gate.arguments)
         value = evaluate(gate.quantity, gate.arguments, scene, cache)
         reason, fraction = _verdict(gate, value)
+        of_gate = quantity_margins(gate.quantity, gate.arguments, scene, cache, before, whole=False)
+        margins = tuple(one for one in of_gate if one.harm in HARMS[:2] and one.level == "not trusted")
     except InputError as error:
         reason = f"cannot be evaluated: {error}"
     except Exception as error:  # a defect of this package, or of another one's quantity
         reason = f"cannot be evaluated: {type(error).__name__}: {error}"
     seconds = perf_counter() - start
-    return GateResult(
-        gate=gate, value=value, unit=unit, passed=not reason, fraction=fraction, reason=reason, seconds=seconds
-    )
+    told: dict[str, Any] = {"value": value, "unit": unit, "fraction": fraction, "reason": reason, "margins": margins}
+    return GateResult(gate=gate, passed=not reason, seconds=seconds, **told)
 
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:

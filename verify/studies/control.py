@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from verify.analysis.margins import beam_margins, marked, run_margins
+from verify.analysis.margins import marked
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
 from verify.quantities.control import ControlOptions
@@ -10,6 +10,7 @@ from verify.report.result import Column, Result, Table
 from verify.studies.base import Progress, Scene, Study
 from verify.studies.charts import Columns, line_chart, percent, si, sized_title, table
 from verify.studies.motion import check_driven
+from verify.studies.tables import scene_margins
 
 COLOURS = {"linear": "#7d8590", "averaged": "#1f6feb", "full": "#d96c05"}
 LIMIT = {"color": "#7d8590", "linestyle": "--", "linewidth": 1.0}
@@ -49,8 +50,8 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
         last, hertz = responses[self.plant], scene.drive.frequency_hz if scene.drive else 0.0
         assert scene.slider is not None
         steady = loop.plants["full"].start(self.target if self.of == "speed" else 0.0, float(last.command[-1]))
-        margins = beam_margins(cache, [(self.model, self.count)], frequency_hz=hertz)
-        margins += run_margins(steady, scene.slider, sized_title(self.model, self.count))
+        sizes, runs = [(self.model, self.count)], [(sized_title(self.model, self.count), steady)]
+        margins = scene_margins(scene, cache, sizes, slider=scene.slider, frequency_hz=hertz, runs=runs)
         condition, size = "the motor is slow against a drive period", 1.0 / (hertz * min(loop.times))
         margins.append(Margin(name="averaging", size=size, fine=0.1, limit=1.0, condition=condition, is_error=False))
         margins.append(Margin(name="interpolation of the force", size=loop.map_error, remedy="raise control.curves"))

@@ -7,7 +7,7 @@ import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sag_margins, sufficient_count
+from verify.analysis.margins import against_exact, marked, run_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of
 from verify.dynamics.arguments import Keep, Step
@@ -22,7 +22,7 @@ from verify.report.result import Column, Figure, Movie, Result, Table
 from verify.settings import Start
 from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import Line, beam_movie, line_chart, model_style, percent, si, sized_title, table
-from verify.studies.tables import reduction_margins
+from verify.studies.tables import reduction_margins, scene_margins
 from verify.validation import Relative, check_number, unit
 
 if TYPE_CHECKING:
@@ -114,9 +114,9 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 keep=Keep(at=nodes, samples=max(self.samples, int(min(steps, MOST_SAMPLES)) + 2)),
             )
         sizes = [(run.model, run.count) for run in runs.values()]
-        margins = beam_margins(cache, sizes, frequency_hz=scene.drive.frequency_hz)
-        margins += [margin for run in runs.values() for margin in run_margins(run, slider, _title(run))]
-        margins += [*sag_margins(cache, slider), *reduction_margins(scene)]
+        titled, hertz = [(_title(run), run) for run in runs.values()], scene.drive.frequency_hz
+        margins = scene_margins(scene, cache, sizes, slider=slider, frequency_hz=hertz, runs=titled)
+        margins += reduction_margins(scene)
         if exact:
             true, near = runs["analytic"].displacement, SLACK * scene.beam.length
             displacements = [(_title(run), run.displacement) for run in runs.values()]

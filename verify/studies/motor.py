@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.analysis.margins import beam_margins, marked, run_margins, sag_margins, sufficient_count
+from verify.analysis.margins import marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
 from verify.errors import InputError
@@ -21,7 +21,7 @@ from verify.settings import Start
 from verify.studies.base import Progress, Scene, Study
 from verify.studies.charts import Columns, Line, line_chart, model_style, percent, si, sized_title, table
 from verify.studies.motion import Damping, check_driven, check_start, readings
-from verify.studies.tables import path_margins, reduction_margins
+from verify.studies.tables import path_margins, reduction_margins, scene_margins
 
 if TYPE_CHECKING:
     from verify.motor.curves import TimeConstant, Transient
@@ -110,7 +110,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for model in self.models:
             case = MotorOptions(model=model, count=n if MODELS[model].sized else None, **settings).case(scene)
             fields.append(self._field(case, fields[0].curve if fields else [], cache, step))
-        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, cache)
+        first, still, margins = fields[0], fields[0].curve[0], _margins(fields, scene, cache)
         margins += path_margins(first.case.model, first.case.count, scene, cache) + reduction_margins(scene)
         valid = verdict_of(margins).level != "not trusted"
         summary = _with_error("Free speed", first.free.speed, first.free.error, "m/s")
@@ -177,16 +177,17 @@ def _with_error(name: str, value: float, error: float, symbol: str) -> str:
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
 
 
-def _margins(fields: list[Field], cache: SolutionCache) -> list[Margin]:
-    """Margins of the beam at the drive, free runs, static sag, and figures that have not converged."""
+def _margins(fields: list[Field], scene: Scene, cache: SolutionCache) -> list[Margin]:
+    """Margins of the scene at the drive, free runs, and figures that have not converged."""
     from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
     case = fields[0].case
     sizes = [(field.case.model, field.case.count) for field in fields]
-    margins = beam_margins(cache, sizes, frequency_hz=case.frequency_hz)
+    runs, wave = [(field.name, field.free.run) for field in fields], surface_motion(case)[0]
+    at: dict[str, Any] = {"frequency_hz": case.frequency_hz, "amplitude": wave}
+    margins = scene_margins(scene, cache, sizes, slider=case.slider, runs=runs, **at)
     for field in fields:
-        margins += run_margins(field.free.run, case.slider, field.name)
         if not field.free.converged and field.free.run.statistics.finished:
             margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
         if not field.curve[0].converged("force"):
@@ -194,7 +195,7 @@ def _margins(fields: list[Field], cache: SolutionCache) -> list[Margin]:
     if case.slider.coupling == "two-way" and not (case.modal_damping or case.beam.loss_factor):
         free = "free vibrations of the beam, which decay by contact alone, may be left out"
         margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, condition=free))
-    return margins + sag_margins(cache, case.slider, surface_motion(case)[0])
+    return margins
 
 
 def _tables(fields: list[Field]) -> list[Table]:

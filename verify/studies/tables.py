@@ -4,17 +4,19 @@ A key with a dot is one of the scene ("beam.length", "drive.force.*.amplitude" f
 is an argument of the quantities that have it. Keys joined by commas have the same value.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import inf, isfinite
-from typing import Any, TypeAlias
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
+from msgspec.structs import replace
 
 from verify.analysis.comparison import ORDER_SPREAD
-from verify.analysis.margins import beam_margins, run_margins, sag_margins
-from verify.analysis.solution_cache import Settings, SolutionCache
+from verify.analysis.margins import result_margins
+from verify.analysis.solution_cache import EULER, Settings, SolutionCache
 from verify.analysis.variants import DEFAULTS, Variant
 from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name
@@ -25,6 +27,9 @@ from verify.scene.load import scene_from
 from verify.studies.base import Scene
 from verify.studies.claims import computed
 
+if TYPE_CHECKING:
+    from verify.problem.slider import Slider
+
 CREST_SPREAD = 2.0, 25.0
 """Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
 PATH_SPREAD = 1.25
@@ -33,6 +38,7 @@ more than a tenth about its mean."""
 ORDER_BOUNDS = 0.2 * ORDER_SPREAD, ORDER_SPREAD  # departures from the order in theory, as of the standing-wave ratios
 TRUE_OF_ANY_THEORY = ("order", ".count_needed")  # quantities that errors of beam theory do not change
 Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
+NONE: Mapping[str, Any] = MappingProxyType({})
 UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
 """Studies that no quantity reads, or that vary the scene themselves."""
 
@@ -143,28 +149,76 @@ def _put(node: Any, path: list[str], field: str, value: Any) -> Any:
     return list(entries.values()) if isinstance(node, list | tuple) else entries
 
 
-def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache) -> list[Margin]:
-    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
+def scene_margins(
+    scene: Scene,
+    cache: SolutionCache,
+    sizes: Sequence[tuple[str, int | None]] = (),
+    *,
+    arguments: Mapping[str, Any] = NONE,
+    driven: bool = True,
+    slider: "Slider | None" = None,
+    **at: Any,
+) -> list[Margin]:
+    """`result_margins` of a scene with its exact steady motion, with the arguments of a quantity; none at a resonance.
+
+    `driven`: whether the drive has to do with the result; `slider`: the one that does. `at`: see `result_margins`.
+    """
+    field, theory = None, dict(at.get("settings", ())).get("theory", EULER)
+    if driven and scene.forces:
+        from verify.quantities import waves  # which `verify measure` of a mode does not load
+        from verify.waves.driven_case import driven as solved
+
+        names = ("frequency_hz", "phase_deg", "position", "loss_factor", "drive")
+        options = waves.FieldOptions(theory=theory, **{key: arguments[key] for key in names if key in arguments})
+        with suppress(InputError):
+            case = waves.driven_case(scene, options)
+            if arguments.get("force") is not None:
+                case = replace(case, forces=options.forces(scene, arguments["force"]))
+            field = solved(case, cache)
+    path = slider.speed * (scene.motion.duration if scene.motion else inf) if slider and slider.speed else 0.0
+    return result_margins(cache, sizes, field=field, slider=slider, path=path, **at)
+
+
+def quantity_margins(
+    name: str,
+    arguments: Mapping[str, Any],
+    scene: Scene,
+    cache: SolutionCache,
+    before: Collection[Any] = (),
+    *,
+    whole: bool = True,
+) -> list[Margin]:
+    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs.
+
+    `before`: keys of runs of other quantities in the cache; `whole`: with the errors of its model.
+    """
     quantity = QUANTITIES.named(name)
     fields = msgspec.structs.fields(quantity.schema)
     values = {field.name: field.default for field in fields if not field.required} | dict(arguments)
     mode, hertz = values.get("mode"), values.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz
-    margins: list[Margin] = []
-    if "beam" in quantity.reads and (isinstance(mode, int) or hertz is not None):
-        settings = tuple((key, values[key]) for key in DEFAULTS if values.get(key) not in (None, DEFAULTS[key]))
-        size = (values["model"], values.get("count")) if values.get("model") in MODELS else (EXACT, None)
-        at = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
-        if not name.endswith(TRUE_OF_ANY_THEORY):
-            with suppress(InputError):
-                margins += beam_margins(cache, [size], **at, settings=settings)
-        margins += figure_margins(name, arguments, scene, cache, settings)
-    runs = [*cache.motions.values(), *(entry.run for entry in cache.motors.values() if hasattr(entry, "run"))]
-    if scene.slider is not None and (sliding := [run for run in runs if run.coupling is not None]):
-        margins += [m for run in sliding for m in run_margins(run, scene.slider, MODELS[run.model].title)]
-        margins += sag_margins(cache, scene.slider)
-    return margins
+    if "beam" not in quantity.reads:
+        return []
+    at: dict[str, Any] = {"arguments": values, "steady": name.startswith("wave.")}
+    at["driven"] = "drive" in quantity.reads and not name.startswith("chain.")  # which moves far
+    settings = tuple((key, values[key]) for key in DEFAULTS if values.get(key) not in (None, DEFAULTS[key]))
+    if "slider" in quantity.reads and scene.slider is not None:
+        runs = [run for key, run in cache.motions.items() if key not in before]
+        runs += [one.run for key, one in cache.motors.items() if key not in before and hasattr(one, "run")]
+        at["runs"] = [(MODELS[run.model].title, run) for run in runs if run.coupling is not None]
+        moved = (one.of(scene) for one in quantity.bind(arguments).values() if hasattr(one, "time_step"))
+        at["slider"] = next(moved, scene.slider) if at["runs"] else None
+    size = (values["model"], values.get("count")) if values.get("model") in MODELS else (EXACT, None)
+    modal = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
+    if name.endswith(TRUE_OF_ANY_THEORY) or modal == {"frequency_hz": None} or not whole:
+        modal = {}
+    try:
+        margins = scene_margins(scene, cache, [size], settings=settings, **at, **modal)
+    except InputError:  # a mode that the exact beam does not have
+        margins = scene_margins(scene, cache, settings=settings, **at)
+    figured = whole and (isinstance(mode, int) or hertz)
+    return margins + (figure_margins(name, arguments, scene, cache, settings) if figured else [])
 
 
 def figure_margins(

@@ -1,22 +1,27 @@
 """The driven beam: standing-wave ratio and crest speed over N, envelopes, surface ellipses."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import numpy as np
 from msgspec import Meta
 from msgspec.structs import replace
 
-from verify.analysis.margins import against_exact, beam_margins, marked, sufficient_count
+from verify.analysis.margins import SHEAR, against_exact, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.variants import not_default
+from verify.analysis.verdict import Margin
 from verify.errors import InputError, WindowError
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Figure, Movie, Result, Table
+from verify.settings import DEFAULT, Theory
 from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, si, sized_title, table
 from verify.studies.convergence import Counts
+from verify.studies.tables import scene_margins
 
 if TYPE_CHECKING:
     from verify.linear.field import HarmonicField
@@ -45,6 +50,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     name, title = "wave", "The driven beam"
 
+    theory: Theory = DEFAULT.theory
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
     counts: Annotated[Counts, Meta(description="Of the errors over N; else 1, 2, 4 times count.")] | None = None
 
@@ -54,7 +60,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
-        case = driven_case(scene, FieldOptions())
+        case = driven_case(scene, FieldOptions(theory=self.theory))
         positions, frequency = [force.position for force in scene.forces], scene.drive.frequency_hz
         try:
             check_span(case.beam, [*positions, *case.places[0]], middle_half(case.beam), case.places[1])
@@ -67,7 +73,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         bare = replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():
             for count in filter(None, (self.count, *(self.counts or ()))):
-                model.build(bare, count).check_propagates(frequency)
+                model.build(bare, count, **dict(not_default({"theory": self.theory}))).check_propagates(frequency)
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Solve the fields of all models. Raises InputError."""
@@ -75,24 +81,21 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.waves.driven_case import driven
 
         assert scene.drive is not None
-        exact, hertz = driven_case(scene, FieldOptions()), scene.drive.frequency_hz
+        exact, hertz = driven_case(scene, FieldOptions(theory=self.theory)), scene.drive.frequency_hz
         models = [model.name for model in discrete("harmonic", scene.beam)]
         n = self.count or sufficient_count(cache, frequency_hz=hertz)
         counts = self.counts or (n, 2 * n, 4 * n)
         sizes = [(EXACT, None), *((model, count) for model in models for count in counts)]
         rows = [_waves(exact, model, count, cache, progress) for model, count in sizes]
-        cases = [exact, *(replace(exact, model=MODELS[model].build(exact.beam, n)) for model in models)]
-        fields = {model: driven(case, cache) for model, case in zip((EXACT, *models), cases, strict=True)}
+        cases = [_sized(exact, *size) for size in ((EXACT, None), *((model, n) for model in models))]
+        fields = {case.model.name: driven(case, cache) for case in cases}
         other = replace(exact, kind="displacement" if exact.kind == "force" and not exact.shunts else "force")
         direction = -1 if rows[0]["drive"]["crest_speed"] > 0.0 else 1  # crests move against the wave
         against, best = measured(other, cache), best_drive(exact, direction=direction)
         ratio, end = against.standing_wave_ratio, {1: "+x", -1: "-x"}
 
-        margins = beam_margins(cache, [(m, n) for m in models], frequency_hz=hertz)
-        size = n if n in counts else max(counts)
-        swr = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows if row["N"] in (None, size)}
+        margins, swr, moved = self._margins(scene, cache, rows, n, best)
         exact_swr = rows[0]["drive"]["standing_wave_ratio"]
-        margins += [against_exact("standing-wave ratio", name, value, exact_swr) for name, value in swr.items()]
         ratios = ", ".join(f"{name} {value:.5g}" for name, value in swr.items())
         reverse = "" if against.waves.direction == direction else f", against that of {other.kind}s of the same phases"
         reasons: dict[str, list[str]] = {}
@@ -105,7 +108,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Result(
             summary=f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
             f"{hertz:g} Hz in [L/4, 3L/4]: {ratios}.",
-            tables=[_over_size(hertz, rows, imposed), _drives(best, exact, exact_swr, end[direction])],
+            tables=[_over_size(hertz, rows, imposed), _drives(best, exact, exact_swr, end[direction], moved)],
             figures=[_envelopes(fields, marked(f"Envelope of the wave, N = {n}", margins)), _ellipses(fields[EXACT])],
             movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
@@ -113,6 +116,40 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             | {"best_ratio": best.ratio, "best_ratio_phase_deg": best.phase_deg},
             margins=margins,
         )
+
+    def _margins(
+        self, scene: Scene, cache: SolutionCache, rows: list[Row], n: int, best: "BestDrive"
+    ) -> "tuple[list[Margin], dict[str, float], BestDrive | None]":
+        """(margins, standing-wave ratio by title, the best drive by Timoshenko theory where shear changes the wave)."""
+        from verify.travelling_wave import best_drive
+
+        ratio = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows}
+        models = dict.fromkeys(row["model"] for row in rows if row["N"])
+        settings, hertz = not_default({"theory": self.theory}), scene.drive.frequency_hz if scene.drive else 0.0
+        sizes = [(model, n) for model in models]
+        margins = scene_margins(scene, cache, sizes, frequency_hz=hertz, settings=settings, steady=True)
+        size = n if any(row["N"] == n for row in rows) else max(row["N"] or 0 for row in rows)
+        for row in (row for row in rows if row["N"] in (None, size)):
+            larger = [one["name"] for one in rows if one["model"] == row["model"] and (one["N"] or 0) > size]
+            given = row["name"], ratio[row["name"]], ratio[rows[0]["name"]]
+            margins.append(against_exact("standing-wave ratio", *given, finer={name: ratio[name] for name in larger}))
+        shown = {row["name"]: ratio[row["name"]] for row in rows if row["N"] in (None, size)}
+        sheared = next((one for one in margins if one.name == SHEAR and one.level == "not trusted"), None)
+        moved = None
+        if sheared is not None:
+            with suppress(InputError):
+                other = driven_case(scene, FieldOptions(theory="timoshenko"))
+                moved = best_drive(other, direction=1 if rows[0]["drive"]["crest_speed"] <= 0.0 else -1)
+                with_it = f"its phase for a pure wave is {moved.phase_deg:.1f} degrees, not {best.phase_deg:.1f}"
+                margins[margins.index(sheared)] = replace(sheared, failure=f"{sheared.failure}; {with_it}")
+        return margins, shown, moved
+
+
+def _sized(case: "DrivenCase", model: str, count: int | None) -> "DrivenCase":
+    """A case on another model of the same theory."""
+    return replace(
+        case, model=MODELS[model].build(case.beam, count, **dict(not_default({"theory": case.model.theory})))
+    )
 
 
 def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
@@ -139,7 +176,7 @@ def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCa
     from verify.travelling_wave import best_frequency
 
     progress(name := sized_title(model, count))
-    case = replace(exact, model=MODELS[model].build(exact.beam, count))
+    case = _sized(exact, model, count)
     row = {"name": name, "model": model, "N": count, "drive": _operation(case, cache), "best": None, "note": ""}
     try:
         return row | {"best": _operation(replace(case, frequency_hz=best_frequency(case)), cache)}
@@ -157,8 +194,11 @@ def _operation(case: "DrivenCase", cache: SolutionCache) -> dict[str, float]:
     }
 
 
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> Table:
-    """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end."""
+def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str, moved: "BestDrive | None") -> Table:
+    """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end.
+
+    `moved`: the best by Timoshenko theory.
+    """
     from verify.waves.operating_point import lead_deg
 
     first, second = (force.amplitude for force in case.forces)
@@ -168,6 +208,8 @@ def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str) -> Ta
         ("best at equal amplitudes", 1.0, best.equal_phase_deg, best.equal_standing_wave_ratio),
         ("best ratio", best.ratio, best.phase_deg, best.standing_wave_ratio),
     ]
+    if moved is not None:
+        rows.append(("best ratio, Timoshenko theory", moved.ratio, moved.phase_deg, moved.standing_wave_ratio))
     notes = [f"Second over first {case.kind}; exact beam, wave towards {end}.", f"{best.note}."][: 1 + bool(best.note)]
     return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
