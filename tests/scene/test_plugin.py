@@ -71,6 +71,16 @@ def test_failing_gate_prints_its_sentence(pytester, scene):
     done.stdout.no_fnmatch_line("*Traceback*")
 
 
+def test_a_passing_gate_of_a_beam_in_millimetres_warns(pytester, scene):
+    """A relative error is that of any unit: the gate passes, and says what `verify measure` says."""
+    path = scene(
+        **{"length = 0.73": "length = 730", "width = 0.031": "width = 31", "thickness = 0.0023": "thickness = 2.3"}
+    )
+    done = pytester.runpytest_inprocess(f"{path}::good", "-W", "default")
+    done.assert_outcomes(passed=1, warnings=1)
+    done.stdout.fnmatch_lines(["*gate good: Not to be trusted: a unit is wrong*"])
+
+
 def test_wrong_scene_is_a_collection_error(pytester, scene):
     done = pytester.runpytest_inprocess(scene(**{"mode.bracket": "mode.brackt"}))
     done.assert_outcomes(errors=1)
