@@ -69,6 +69,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     """Worst first."""
 
     @property
+    def holds(self) -> bool:
+        """Whether findings in words may stand: of what is not trusted, sizes alone fail."""
+        return not any(one.level == "not trusted" and one.harm in HARMS[:3] for one in self.margins)
+
+    @property
     def others(self) -> str:
         """Further margins beyond `fine`, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
         off = [one for one in reversed(self.margins) if one.level != "trusted"]
@@ -112,6 +117,17 @@ def void(name: str, failure: str, remedy: str = "", *, leads: bool = False) -> M
     """The margin of a result that does not exist: not converged, diverged, left the beam."""
     harm: Harm = "premise" if leads else "void"
     return Margin(name=name, size=float("inf"), failure=failure, remedy=remedy, harm=harm)
+
+
+def missing(what: str, count: int, total: int, why: str = "") -> list[Margin]:
+    """The margin of `count` values without a result of `total`, `what` in the plural: void where all are missing."""
+    if not count:
+        return []
+    text = f"{count} of {total} {what} have no value" + f" ({why})" * bool(why)
+    if count == total:
+        return [void(what, text)]
+    condition, size = f"the others suffice: {text}", count / total
+    return [Margin(name=what, size=size, fine=0.0, limit=float("inf"), condition=condition, is_error=False)]
 
 
 def three_digits(value: float) -> str:

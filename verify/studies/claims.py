@@ -3,6 +3,7 @@
 from typing import Any
 
 from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import missing
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.report.result import Column, Result
@@ -38,7 +39,7 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Evaluate every claim; one that cannot be evaluated is a row with the reason."""
-        rows, warnings = list[dict[str, Any]](), list[str]()
+        rows, reasons = list[dict[str, Any]](), list[str]()
         for claim in scene.claim:
             progress(f"claim {claim.id}")
             row: dict[str, Any] = {"id": claim.id, "quantity": claim.quantity, "claimed": claim.expected}
@@ -53,13 +54,13 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     row["exact"] = computed(claim, scene, cache, model="analytic", count=None)
                     row["exact_agrees"] = claim.agrees(row["exact"])
             except InputError as error:
-                warnings.append(f"Claim {claim.id} is not evaluated: {error}")
+                reasons.append(f"{claim.id}: {error}")
             rows.append(row)
         agree = [row["agrees"] for row in rows if row["agrees"] is not None]
         return Result(
             summary=f"{sum(agree)} of {len(agree)} published statements agree with the computed values." * bool(agree),
             tables=[table("Claimed and computed", rows, COLUMNS, *NOTES)],
-            warnings=warnings,
+            margins=missing("claims", len(reasons), len(rows), "; ".join(reasons)),
             data={"claims": rows},
         )
 

@@ -20,7 +20,7 @@ import numpy as np
 from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket, SolutionCache
-from verify.analysis.verdict import Margin, badness
+from verify.analysis.verdict import Margin, badness, missing
 from verify.errors import InputError, shown
 from verify.estimate import as_text
 from verify.files import exists, write_whole
@@ -90,10 +90,9 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         margins = list({margin.name: margin for margin in ordered}.values())  # of each the worst combination's
         if "count" in combinations[0]:  # coarse sizes are the subject, not a fault
             margins = [margin for margin in margins if not margin.name.startswith("discretisation")]
-        quantities, failed = (
-            [QUANTITIES[name] for name in self.quantities],
-            sum(row["reason"] is not None for row in rows),
-        )
+        quantities, reasons = [QUANTITIES[name] for name in self.quantities], [row["reason"] for row in rows]
+        failed, why = sum(reason is not None for reason in reasons), next(filter(None, reasons), "")
+        margins += missing("combinations", failed, len(rows), why)
         columns = [Column(key, format=".6g") for key in combinations[0]]
         columns += [Column(q.name, unit_symbol(q.unit), ".7g") for q in quantities]
         columns += [Column(AGREE)] * self.claims + [Column("reason")] * bool(failed)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from verify.analysis.margins import SHEAR, against_exact, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import not_default
-from verify.analysis.verdict import Margin
+from verify.analysis.verdict import Margin, verdict_of
 from verify.errors import InputError, WindowError
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
@@ -105,9 +105,10 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"With {other.kind}s of the same phases imposed the exact standing-wave ratio is {ratio:.5g}, the stronger "
             f"wave towards {end[against.waves.direction]}."
         )
+        summary = f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
+        summary += f"{hertz:g} Hz in [L/4, 3L/4]: {ratios}."
         return Result(
-            summary=f"The stronger wave runs towards {end[direction]}{reverse}. Standing-wave ratio at "
-            f"{hertz:g} Hz in [L/4, 3L/4]: {ratios}.",
+            summary=summary if verdict_of(margins).holds else "",
             tables=[_over_size(hertz, rows, imposed), _drives(best, exact, exact_swr, end[direction], moved)],
             figures=[_envelopes(fields, marked(f"Envelope of the wave, N = {n}", margins)), _ellipses(fields[EXACT])],
             movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
