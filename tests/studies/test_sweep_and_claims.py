@@ -57,6 +57,9 @@ def test_failed_combinations_are_rows_with_the_reason():
     assert bad["mode.frequency"] is None
     assert "beam.density = -1.0" in bad["reason"]
     assert "1 without a value" in result.summary
+    assert result.verdict.level == "conditional"
+    none = run_sweep(PAPER, ["mode.frequency"], {"beam.density": [-2.0, -1.0]}, arguments=FREQUENCY).verdict
+    assert (none.level, none.margins[0].harm) == ("not trusted", "void")
 
 
 def test_keys_joined_by_commas_vary_together():

@@ -127,7 +127,7 @@ def missing(what: str, count: int, total: int, why: str = "") -> list[Margin]:
     if count == total:
         return [void(what, text)]
     condition, size = f"the others suffice: {text}", count / total
-    return [Margin(name=what, size=size, fine=0.0, limit=float("inf"), condition=condition, is_error=False)]
+    return [Margin(name=f"{what} without a value", size=size, fine=0.0, limit=float("inf"), condition=condition)]
 
 
 def three_digits(value: float) -> str:
