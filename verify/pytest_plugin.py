@@ -79,11 +79,11 @@ class GateItem(pytest.Item):
         values = {"measured": result.value, "expected": band, "unit": result.unit}
         values["fraction"] = "" if result.fraction is None else f"{result.fraction:.6g}"
         values["seconds"] = f"{result.seconds:.6g}"
-        void = verdict_of(result.margins).headline if result.margins else ""
-        values |= {"verdict": void} if void else {}
+        verdict = verdict_of(result.margins)
+        values["verdict"] = verdict.headline if result.margins else ""
         self.user_properties += [(name, str(value)) for name, value in values.items()]
-        if void:
-            warn(pytest.PytestWarning(f"gate {result.id}: {void}"), stacklevel=1)
+        if verdict.level == "not trusted":
+            warn(pytest.PytestWarning(f"gate {result.id}: {verdict.headline}"), stacklevel=1)
         if not result.passed:
             raise GateFailedError(f"gate {result.id}: {result.reason} (expected {band}{unit}; {self.gate.why})")
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import msgspec
 
 from verify.analysis.solution_cache import Bracket, SolutionCache
-from verify.analysis.verdict import HARMS, Margin, Verdict, verdict_of, void
+from verify.analysis.verdict import Margin, Verdict, verdict_of, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError, raise_all
 from verify.quantities.base import QUANTITIES, evaluate
@@ -17,7 +17,7 @@ from verify.scene.load import load_scene, study_errors
 from verify.scene.model import Complex, Gate, Scene
 from verify.scene.warnings import scene_warnings
 from verify.studies.base import STUDIES, result_of, studies_of
-from verify.studies.tables import quantity_margins, scene_margins
+from verify.studies.tables import premises
 
 if TYPE_CHECKING:
     from verify.report.result import Result
@@ -38,7 +38,7 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     reason: str = ""  # why it failed or was skipped
     seconds: float = 0.0
     margins: tuple[Margin, ...] = ()
-    """What voids the value; the errors of the model are a matter of the tolerance."""
+    """What its value rests on: units, drive, slider's sag. Errors of the model are a matter of the tolerance."""
 
     @property
     def id(self) -> str:
@@ -95,8 +95,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def verdict(self) -> Verdict:
         """The worst of all studies, of linear theory under the drive, and of the gates."""
-        margins = [*self.margins, *(margin for gate in self.gates for margin in gate.margins)]
-        margins += [margin for result in self.results.values() for margin in result.margins]
+        margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
         judged = any(gate.passed is not None for gate in self.gates)
         if self.failed:
             failed = ", ".join(result.id for result in self.failed)
@@ -139,7 +138,7 @@ def run_scene(
         results=results,
         skipped=tuple(row for row in rows if not row.runs),
         warnings=scene_warnings(loaded),
-        margins=tuple(scene_margins(loaded, cache, slider=loaded.slider)),
+        margins=premises(loaded, cache),
         seconds=perf_counter() - start,
     )
 
@@ -188,14 +187,13 @@ def skipped_gates(scene: Scene, overrides: Sequence[str]) -> dict[str, str]:
 
 def run_gate(gate: Gate, scene: Scene, cache: SolutionCache) -> GateResult:
     """Evaluate one gate. Never raises: a gate that cannot be evaluated fails with the reason."""
-    start, before = perf_counter(), {*cache.motions, *cache.motors}
+    start = perf_counter()
     unit, value, fraction, margins = "", None, None, tuple[Margin, ...]()
     try:
         unit = QUANTITIES.named(gate.quantity).unit_of(gate.arguments)
         value = evaluate(gate.quantity, gate.arguments, scene, cache)
         reason, fraction = _verdict(gate, value)
-        of_gate = quantity_margins(gate.quantity, gate.arguments, scene, cache, before, whole=False)
-        margins = tuple(one for one in of_gate if one.harm in HARMS[:2] and one.level == "not trusted")
+        margins = premises(scene, cache, QUANTITIES[gate.quantity].reads)
     except InputError as error:
         reason = f"cannot be evaluated: {error}"
     except Exception as error:  # a defect of this package, or of another one's quantity

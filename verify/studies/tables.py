@@ -8,7 +8,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import inf, isfinite
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
@@ -22,7 +21,7 @@ from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name
 from verify.estimate import as_plain
 from verify.linear.registry import EXACT, MODELS
-from verify.quantities.base import QUANTITIES, evaluate
+from verify.quantities.base import QUANTITIES, TABLES, evaluate
 from verify.scene.load import scene_from
 from verify.studies.base import Scene
 from verify.studies.claims import computed
@@ -38,7 +37,6 @@ more than a tenth about its mean."""
 ORDER_BOUNDS = 0.2 * ORDER_SPREAD, ORDER_SPREAD  # departures from the order in theory, as of the standing-wave ratios
 TRUE_OF_ANY_THEORY = ("order", ".count_needed")  # quantities that errors of beam theory do not change
 Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
-NONE: Mapping[str, Any] = MappingProxyType({})
 UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
 """Studies that no quantity reads, or that vary the scene themselves."""
 
@@ -154,12 +152,12 @@ def scene_margins(
     cache: SolutionCache,
     sizes: Sequence[tuple[str, int | None]] = (),
     *,
-    arguments: Mapping[str, Any] = NONE,
+    by: Any = None,
     driven: bool = True,
     slider: "Slider | None" = None,
     **at: Any,
 ) -> list[Margin]:
-    """`result_margins` of a scene with its exact steady motion, with the arguments of a quantity; none at a resonance.
+    """`result_margins` of a scene with its exact steady motion by the options of a drive; none at a resonance.
 
     `driven`: whether the drive has to do with the result; `slider`: the one that does. `at`: see `result_margins`.
     """
@@ -169,56 +167,57 @@ def scene_margins(
         from verify.waves.driven_case import driven as solved
 
         names = ("frequency_hz", "phase_deg", "position", "loss_factor", "drive")
-        options = waves.FieldOptions(theory=theory, **{key: arguments[key] for key in names if key in arguments})
+        options = waves.FieldOptions(theory=theory, **{key: getattr(by, key) for key in names if hasattr(by, key)})
         with suppress(InputError):
             case = waves.driven_case(scene, options)
-            if arguments.get("force") is not None:
-                case = replace(case, forces=options.forces(scene, arguments["force"]))
+            if getattr(by, "force", None) is not None:
+                case = replace(case, forces=options.forces(scene, by.force))
             field = solved(case, cache)
     path = slider.speed * (scene.motion.duration if scene.motion else inf) if slider and slider.speed else 0.0
     return result_margins(cache, sizes, field=field, slider=slider, path=path, **at)
 
 
-def quantity_margins(
-    name: str,
-    arguments: Mapping[str, Any],
-    scene: Scene,
-    cache: SolutionCache,
-    before: Collection[Any] = (),
-    *,
-    whole: bool = True,
-) -> list[Margin]:
-    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs.
-
-    `before`: keys of runs of other quantities in the cache; `whole`: with the errors of its model.
-    """
+def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cache: SolutionCache) -> list[Margin]:
+    """Margins of a quantity that the cache has evaluated: of its model at its mode or drive, and of its runs."""
     quantity = QUANTITIES.named(name)
-    fields = msgspec.structs.fields(quantity.schema)
+    if "beam" not in quantity.reads:
+        return []
+    fields, groups = msgspec.structs.fields(quantity.schema), quantity.bind(arguments).values()
     values = {field.name: field.default for field in fields if not field.required} | dict(arguments)
     mode, hertz = values.get("mode"), values.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz
-    if "beam" not in quantity.reads:
-        return []
-    at: dict[str, Any] = {"arguments": values, "steady": name.startswith("wave.")}
-    at["driven"] = "drive" in quantity.reads and not name.startswith("chain.")  # which moves far
     settings = tuple((key, values[key]) for key in DEFAULTS if values.get(key) not in (None, DEFAULTS[key]))
+    at: dict[str, Any] = {"settings": settings, "steady": name.startswith("wave.")}
+    at["by"] = next((group for group in groups if hasattr(group, "forces")), None)
+    # a ratio does not depend on amplitudes, which another kind of drive gives another unit; a chain moves far
+    unit = quantity.unit in ("1", "deg", "Hz") and values.get("drive") is not None
+    at["driven"] = "drive" in quantity.reads and not unit and not name.startswith("chain.")
     if "slider" in quantity.reads and scene.slider is not None:
-        runs = [run for key, run in cache.motions.items() if key not in before]
-        runs += [one.run for key, one in cache.motors.items() if key not in before and hasattr(one, "run")]
+        runs = [*cache.motions.values(), *(entry.run for entry in cache.motors.values() if hasattr(entry, "run"))]
         at["runs"] = [(MODELS[run.model].title, run) for run in runs if run.coupling is not None]
-        moved = (one.of(scene) for one in quantity.bind(arguments).values() if hasattr(one, "time_step"))
+        moved = (group.of(scene) for group in groups if hasattr(group, "time_step"))
         at["slider"] = next(moved, scene.slider) if at["runs"] else None
-    size = (values["model"], values.get("count")) if values.get("model") in MODELS else (EXACT, None)
-    modal = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
-    if name.endswith(TRUE_OF_ANY_THEORY) or modal == {"frequency_hz": None} or not whole:
-        modal = {}
-    try:
-        margins = scene_margins(scene, cache, [size], settings=settings, **at, **modal)
-    except InputError:  # a mode that the exact beam does not have
-        margins = scene_margins(scene, cache, settings=settings, **at)
-    figured = whole and (isinstance(mode, int) or hertz)
-    return margins + (figure_margins(name, arguments, scene, cache, settings) if figured else [])
+    if name.endswith(TRUE_OF_ANY_THEORY) or not (isinstance(mode, int) or hertz):
+        margins = scene_margins(scene, cache, **at)
+    else:
+        size = (values["model"], values.get("count")) if values.get("model") in MODELS else (EXACT, None)
+        modal: dict[str, Any] = {"mode": mode} if isinstance(mode, int) else {"frequency_hz": hertz}
+        try:
+            margins = scene_margins(scene, cache, [size], **at, **modal)
+        except InputError:  # a mode that the exact beam does not have
+            margins = scene_margins(scene, cache, **at)
+    return margins + (figure_margins(name, arguments, scene, cache, settings) if isinstance(mode, int) or hertz else [])
+
+
+def premises(scene: Scene, cache: SolutionCache, reads: Collection[str] = TABLES) -> tuple[Margin, ...]:
+    """Margins of what results from these tables of a scene rest on, computed once: units, drive, slider's sag."""
+    if "beam" not in reads:
+        return ()
+    key = "premises", "drive" in reads, "slider" in reads
+    if key not in cache.motors:
+        cache.motors[key] = tuple(scene_margins(scene, cache, driven=key[1], slider=scene.slider if key[2] else None))
+    return cache.motors[key]  # type: ignore[no-any-return]
 
 
 def figure_margins(
