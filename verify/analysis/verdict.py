@@ -78,7 +78,8 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
         """Further margins beyond `fine`, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""
         off = [one for one in reversed(self.margins) if one.level != "trusted"]
         worst = {m.name: m.text if m.is_error or m.level == "conditional" else m.failure or m.text for m in off}
-        texts = [text for name, text in reversed(worst.items()) if name != self.margins[0].name]
+        told = {name: text for name, text in reversed(worst.items()) if name != self.margins[0].name}
+        texts = [text for text in told.values() if text not in self.headline]
         return f"also: {', '.join(texts)}" if texts else ""
 
     def to_dict(self) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
+from verify.analysis.plausibility import unit_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
@@ -156,7 +157,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Fit the parameters. Raises InputError."""
         progress(f"fit of {', '.join(self.parameters)}")
         model, data, result = self.fitted(scene, cache)
-        margins = [void("the fit", words, leads=True) for words in result.rejected]
+        margins = unit_margins(scene.beam) + [void("the fit", words, leads=True) for words in result.rejected]
         identified, rows = list[str](), list[list[Any]]()
         for estimate in result.estimates.values():
             name, half = estimate.name, 0.5 * (estimate.interval[1] - estimate.interval[0])
