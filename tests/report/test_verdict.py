@@ -121,6 +121,16 @@ def test_margins_of_the_paper_at_mode_22_are_the_published_and_closed_forms():
     assert margins["discretisation of 49 segments"].size == pytest.approx(0.0042802, abs=1e-7)
 
 
+@pytest.mark.parametrize("at", [{"mode": 9}, {"frequency_hz": 21e3}])
+def test_rayleighs_theory_leaves_out_shear(at):
+    """Of a thick bar: rotary inertia is I k^2/A, and shear E/(kappa G) = 3.2 times that for nu = 0.33."""
+    beam = Beam(length=0.4, width=0.01, thickness=0.02, youngs_modulus=71e9, density=2710.0)
+    cache, settings = SolutionCache(beam), ((("theory", "rayleigh"),), ())
+    rayleigh, euler = (by_name(beam_margins(cache, [], **at, settings=one))["shear and rotary inertia"].size
+                       for one in settings)  # fmt: skip
+    assert 0.55 < rayleigh / euler < 0.77  # 3.19 / 4.19 for long waves
+
+
 def test_the_error_at_a_driven_wave_is_that_of_a_mode_at_its_frequency():
     cache = SolutionCache(PAPER)
     for model, count in (("segment", 31), ("fem", 37)):

@@ -97,18 +97,20 @@ def beam_margins(
     found += [_discretisation(cache, model, n, mode, frequency_hz or 0.0, settings, where) for model, n in sizes if n]
     if k is None:
         return found
-    if theory_of(settings) == EULER:
+    theory = theory_of(settings)
+    if theory != "timoshenko":  # Rayleigh's has the inertia, the smaller part
         if any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces):
             left_out = "shear, rotary inertia and bending across the width may be left out, unknown without a shape"
             unknown = Margin(name="beam theory", size=0.0, fine=-1.0, condition=left_out, where=where, is_error=False)
             return [*found, unknown]
-        size, name = 1.0 - theory_ratio(beam.base_section, k), SHEAR
+        rigid = replace(beam.base_section, shear_stiffness=None)
+        size = 1.0 - theory_ratio(beam.base_section, k) / (1.0 if theory == EULER else theory_ratio(rigid, k))
         if mode:
             with suppress(InputError):
-                size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode) - 1.0)
+                size = abs(cache.exact_hz(mode, "timoshenko") / cache.exact_hz(mode, theory) - 1.0)
         tune = "retune the drive by wave.best_frequency theory=timoshenko, or use a thinner beam"
         remedy = "use theory = 'timoshenko'" if mode or steady else tune
-        found.append(Margin(name=name, size=size, where=where, remedy=remedy))
+        found.append(Margin(name=SHEAR, size=size, where=where, remedy=remedy))
     width = max((one.width for one in (beam, *beam.section) if one.width), default=0.0)
     if width and beam.thickness and width >= FLATNESS * beam.thickness:  # a strip
         size, half = stiffening(0.5 * k * width, beam.poissons_ratio), pi / k
