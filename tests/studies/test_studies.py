@@ -39,7 +39,9 @@ def test_missing_modes_are_gaps_with_a_reason(run):
     result = run("paper", Spectrum(modes=13, count=11))
     assert result.tables[0].records()[-1]["segments"] is None
     assert result.tables[0].records()[-1]["Hermite elements"] is not None
-    assert any("segments" in warning and "raise count" in warning for warning in result.warnings)
+    assert result.verdict.level == "not trusted"
+    assert "segments have no answer at mode 13" in result.verdict.headline
+    assert any(one.name.startswith("errors of segments") for one in result.verdict.margins)
     assert "segments" not in result.summary
 
 

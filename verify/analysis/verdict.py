@@ -124,11 +124,12 @@ def missing(what: str, count: int, total: int, why: str = "") -> list[Margin]:
     """The margin of `count` values without a result of `total`, `what` in the plural: void where all are missing."""
     if not count:
         return []
-    text = f"{count} of {total} {what} have no value" + f" ({why})" * bool(why)
+    where, size = f"({why})" if why else "", count / total
+    text = f"{count} of {total} {what} have no value {where}".rstrip()
     if count == total:
         return [void(what, text)]
-    condition, size = f"the others suffice: {text}", count / total
-    return [Margin(name=f"{what} without a value", size=size, fine=0.0, limit=float("inf"), condition=condition)]
+    name, condition = f"{what} without a value", f"the others suffice: {text}"
+    return [Margin(name=name, size=size, where=where, fine=0.0, limit=float("inf"), condition=condition)]
 
 
 def three_digits(value: float) -> str:

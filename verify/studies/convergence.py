@@ -13,6 +13,7 @@ from verify.analysis.comparison import ORDER_FLOOR, ORDER_SPREAD, grid_convergen
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache, comparable, theory_of, unproven
 from verify.analysis.variants import Rules, Variant
+from verify.analysis.verdict import missing
 from verify.errors import InputError, NoBracketError
 from verify.linear.mesh import divide
 from verify.linear.registry import MEAN, MODELS
@@ -76,6 +77,8 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         for settings in dict.fromkeys(variant.settings for variant in variants):
             sizes = [(variant.model, max(self.counts)) for variant in variants if variant.settings == settings]
             margins += beam_margins(cache, sizes, mode=max(self.modes), settings=settings)
+        reasons = [row["why"] for row in rows if row["why"]]
+        margins += missing("errors", len(reasons), len(rows), next(iter(reasons), ""))
         rule = " with wall half" if "clamped" in cache.beam.supports else ""
         title, draw = "Frequency error over N", partial(self._draw_errors, cache, rows, [] if rule else bounds)
         tables = [table(title, rows, ERRORS, *NOTES, *self._printed_joints(cache.beam))]
@@ -163,7 +166,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
 
     def _summarise(self, cache: SolutionCache, rows: list[Row]) -> tuple[list[str], list[str]]:
         """(errors of the highest mode, marked outside the asymptotic range; warnings on orders outside of it)."""
-        errors, warnings = [], dict.fromkeys(row["why"] for row in rows if row["why"])
+        errors, warnings = [], dict[str, None]()
         highest = [row for row in rows if row["mode"] == max(self.modes)]
         for variant in dict.fromkeys(row["variant"] for row in rows):
             series = [row for row in highest if row["variant"] == variant]

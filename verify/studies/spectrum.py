@@ -10,6 +10,7 @@ from msgspec import Meta
 from verify.analysis.margins import beam_margins, marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache, comparable, theory_of
 from verify.analysis.variants import Rules, Variant
+from verify.analysis.verdict import Margin, missing
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.exact.plate import plate_error
@@ -46,13 +47,13 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         models, left_out = comparable(cache.beam, (count,), self.modes)
         variants, numbers = self.variants(models), range(1, self.modes + 1)
         errors: dict[Variant, list[float | None]] = {}
-        warnings, ends = list[str](), list[str]()
+        absent, ends = list[Margin](), list[str]()
         for variant in variants:
             # The last mode first: one solve with the most modes then serves all.
             cells = [cache.error_or_reason(variant.model, count, n, variant.settings) for n in reversed(numbers)][::-1]
             errors[variant] = [error for error, _ in cells]
             error, reason = cells[-1]
-            warnings += [f"{variant.title}: {reason}"] * bool(reason)
+            absent += missing(f"errors of {variant.title}", errors[variant].count(None), self.modes, reason)
             ends += [] if error is None else [f"{variant.title} {100 * error:+.4g} %"]
         theories, theory, settings = self._theories(cache), theory_of(variants[0].settings), variants[0].settings
         rows = zip(
@@ -62,7 +63,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         columns += [percent(v.title) for v in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
         note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
         sizes = [(variant.model, count) for variant in variants if variant.settings == settings]
-        margins = beam_margins(cache, sizes, mode=self.modes, settings=settings)
+        margins = beam_margins(cache, sizes, mode=self.modes, settings=settings) + absent
         size, draw = f"N = {count}", partial(draw_errors, errors, theories)
         title = marked(f"Frequency error over mode number, {size}", margins)
         return Result(
@@ -72,7 +73,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
                 Figure("mode-errors", title, CAPTIONS["mode-errors"], draw),
                 *self._shapes(cache, variants, count),
             ],
-            warnings=[*warnings, *left_out.values()],
+            warnings=list(left_out.values()),
             data={"count": count, "errors": {v.label: series for v, series in errors.items()}, "theories": theories},
             margins=margins,
         )
