@@ -10,7 +10,7 @@ from driven_strip import HALF, HERTZ, MIDDLE, OMEGA, PAIR, PERIOD, STRIP, drive,
 from msgspec.structs import replace
 
 from verify import Contact, Excitation, Foot, Keep, Slider, simulate
-from verify.analysis.margins import sag_margins
+from verify.analysis.linearity import sag_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.cases import layer
 

@@ -9,15 +9,8 @@ from msgspec.structs import replace
 from scipy.optimize import brentq
 
 from verify import Beam
-from verify.analysis.margins import (
-    against_exact,
-    beam_margins,
-    linearity_margins,
-    marked,
-    run_margins,
-    sag_margins,
-    sufficient_count,
-)
+from verify.analysis.linearity import linearity_margins, sag_margins
+from verify.analysis.margins import against_exact, beam_margins, marked, run_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import MORE, Margin, verdict_of, void
 from verify.linear.registry import MODELS
