@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.analysis.comparison import LOW_MAC, node_weights
+from verify.analysis.plausibility import unit_margins
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS
 from verify.compare.compare import Options, compare, exact_shapes, pair_shapes
@@ -156,7 +157,7 @@ def compare_shapes(scene: Any, mesh: MeshShapes, options: Options | None = None)
     summary = f"{len(rows)} shapes, lowest MAC {mac.min():.4f}; nearest model by shape: {near[0][0]}."
     data = {"scene": scene.name, "source": mesh.source, "passed": passed}
     if listed is None:
-        return Result(summary, tables, warnings=warnings, data=data)
+        return Result(summary, tables, warnings=warnings, data=data, margins=unit_margins(beam))
     data = dict(listed.data) | {"passed": passed and listed.data["passed"]}
     tables, warnings = [*tables, *listed.tables], [*warnings, *listed.warnings]
     return replace(listed, summary=f"{summary} {listed.summary}", tables=tables, warnings=warnings, data=data)
