@@ -64,6 +64,10 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     margins: tuple[Margin, ...] = ()
     """Worst first."""
 
+    def __repr__(self) -> str:
+        """The level and the sentence."""
+        return f"<Verdict {self.level}: {self.headline}>"
+
     @property
     def others(self) -> str:
         """Further margins beyond `fine`, of each name the worst: 'also: one-way coupling 2 %, shear 1.1 %'."""

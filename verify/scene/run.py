@@ -73,6 +73,10 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Linear theory under the drive and under the weight of the slider."""
     seconds: float
 
+    def __repr__(self) -> str:
+        """The verdict and the gates in words."""
+        return f"<RunResult {self.scene.name}: {self.verdict.headline} {self.gates_in_words}>"
+
     @property
     def failed(self) -> tuple[GateResult, ...]:
         """Gates outside their bands, or that could not be evaluated."""
