@@ -34,7 +34,7 @@ def test_frequencies_of_20_links_with_a_full_joint_at_the_wall_are_known_and_cor
 
 
 def test_a_chain_has_the_stiffnesses_of_gregory_and_a_file(tmp_path):
-    result = verify.rigid_chain(STEEL, 20, path=tmp_path / "beam.xml")
+    result = verify.engine_chain(STEEL, 20, path=tmp_path / "beam.xml")
     springs = [joint.hinges[0].stiffness for joint in result.data["joints"][:4]]
     unit = STEEL.bending_stiffness * 20 / STEEL.length
     np.testing.assert_allclose(springs, unit / np.array([3 / 8, 7 / 6, 23 / 24, 1.0]), rtol=1e-9)
@@ -57,7 +57,7 @@ def test_the_verdict_of_a_model_names_its_worst_error():
         lambda: verify.choose(STEEL, mode=3, error=1.5),
         lambda: verify.compare_frequencies(STEEL, [6.4, 39.9], unit="furlong"),
         lambda: verify.compare_frequencies(3, [6.4, 39.9]),
-        lambda: verify.rigid_chain(STEEL, 1),
+        lambda: verify.engine_chain(STEEL, 1),
         lambda: verify.verdict(SegmentModel(STEEL, 20)),
         lambda: verify.verdict(STEEL, mode=2),
     ],
@@ -67,7 +67,7 @@ def test_bad_arguments_are_one_sentence(ask):
         ask()
 
 
-@pytest.mark.parametrize("ask", [lambda: verify.choose(STEEL, 3, 0.01), lambda: verify.rigid_chain(STEEL, 20)])
+@pytest.mark.parametrize("ask", [lambda: verify.choose(STEEL, 3, 0.01), lambda: verify.engine_chain(STEEL, 20)])
 def test_a_result_shows_its_verdict_in_short(ask):
     result = ask()
     assert result.verdict.headline in repr(result)

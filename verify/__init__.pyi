@@ -14,7 +14,7 @@ from verify.analysis.comparison import mode_errors as mode_errors
 from verify.analytic_modes import ExactModel as ExactModel
 from verify.answers import choose as choose
 from verify.answers import compare_frequencies as compare_frequencies
-from verify.answers import rigid_chain as rigid_chain
+from verify.answers import engine_chain as engine_chain
 from verify.answers import verdict as verdict
 from verify.chain.statics import Bent as Bent
 from verify.chain.statics import bend as bend

@@ -121,7 +121,7 @@ def compare_frequencies(
 
 
 @one_blas_thread()
-def rigid_chain(
+def engine_chain(
     beam: Beam | NamedBeam | str | Path,
     count: int | None = None,
     *,

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from verify.answers import rigid_chain
+from verify.answers import engine_chain
 from verify.commands.choose import relative_error
 from verify.commands.shared import (
     CHAINS,
@@ -61,7 +61,7 @@ def chain(
     Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`
     """
     ratio, limit, brief = typed(damping, Relative, "damping"), relative_error(error), not any(formats.values())
-    result = rigid_chain(
+    result = engine_chain(
         load_beam(scene, overrides),
         count,
         mode=mode,
