@@ -1,5 +1,6 @@
 """Studies against direct calls of the public verbs; every chart draws."""
 
+import numpy as np
 import pytest
 from msgspec.structs import replace
 
