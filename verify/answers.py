@@ -65,11 +65,11 @@ def choose(
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
     notes = [f"{choice.variant.title}: {choice.size.known_by}" for choice in choices]
-    notes += ["error law: expected error, see docs/theory.md", "lower modes beyond it: errors above the limit at N"]
+    notes += ["error law: expected error, see docs/theory.md"]
     which = f"{first_mode}-{last}" if last > first_mode else f"{last}"
     return Result(
         f"Smallest N from which on the frequency error of mode {which} is at most {100.0 * error:g} %.",
-        [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
+        [Table("Sufficient sizes", [*columns, Column("lower modes above the limit")], rows, notes)],
         warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
         margins=margins,
     )

@@ -1,4 +1,4 @@
-"""Pages made from the package into `docs/made` (scenes, quantities, gates), and its docstrings as plain text."""
+"""Pages made from the package into `docs/made` (scenes, quantities, gates), a report, docstrings as plain text."""
 
 import re
 from dataclasses import replace
@@ -96,8 +96,18 @@ def make(_app):
         (MADE / f"{page.__name__}.md").write_text("\n".join(page()), "utf-8")
 
 
+def report(app, error):
+    """Run the paper's scene and write its report, which the first page shows."""
+    from verify.report.page import run_page
+    from verify.scene.run import run_scene
+
+    if error is None and app.builder.format == "html":
+        (Path(app.outdir) / "paper-report.html").write_text(run_page(run_scene("paper"), "verify run paper"), "utf-8")
+
+
 def setup(app):
-    """Write the generated pages before Sphinx reads any."""
+    """Write the generated pages before Sphinx reads any, and a report beside the pages."""
+    app.connect("build-finished", report)
     app.connect("builder-inited", make)
     app.connect("autodoc-process-docstring", plain, priority=400)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -18,7 +18,9 @@ from verify.cli import cli, status_of
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
-GUIDES = [ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "continuous-integration")]
+GUIDES = [
+    ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "compare", "continuous-integration")
+]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
