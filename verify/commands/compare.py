@@ -1,5 +1,6 @@
 """`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
+from os.path import exists
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +73,7 @@ def compare(
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_beam(scene, overrides)
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
-    frequencies = None if Path(words[0] if words else "").exists() else read_words(words, unit)
+    frequencies = None if exists(words[0] if words else "") else read_words(words, unit)  # of any length: no error
     if model is not None:
         frequencies = solve_model(model, loaded.beam, count, mode)
     elif frequencies is None and len(words) > 1:
