@@ -86,12 +86,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def passed(self) -> bool:
         """Whether no gate failed; not where the scene has gates, and neither they nor a study ran."""
-        return not self.failed and (self.judged or bool(self.results) or not self.gates)
-
-    @property
-    def judged(self) -> bool:
-        """Whether any gate ran."""
-        return any(gate.passed is not None for gate in self.gates)
+        skipped = all(gate.passed is None for gate in self.gates)
+        return not self.failed and not (self.gates and skipped and not self.results)
 
     @property
     def gates_in_words(self) -> str:
@@ -107,14 +103,15 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def verdict(self) -> Verdict:
         """The worst of all studies, of linear theory under the drive, and of the gates."""
         margins = [*self.margins, *(margin for result in self.results.values() for margin in result.margins)]
+        judged = any(gate.passed is not None for gate in self.gates)
         if self.failed:
             failed = ", ".join(result.id for result in self.failed)
             margins.append(void("gates", f"{self.gates_in_words}, {failed}", leads=True))
-        elif not (self.judged or self.results):
+        elif not (judged or self.results):
             remedy = "leave --set out, or set gate.ID.expect for the new values" if self.gates else ADD
             margins.append(void("the run", "no study and no gate ran, so nothing is judged", remedy))
         verdict = verdict_of(margins)
-        if verdict.level != "trusted" or any(margin.is_error for margin in margins) or not self.judged:
+        if verdict.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
             return verdict
         headline = f"Trusted as far as its gates: {self.gates_in_words}."
         return Verdict(level="trusted", headline=headline, margins=verdict.margins)
