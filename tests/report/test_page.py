@@ -4,8 +4,9 @@ import json
 import re
 import shutil
 import subprocess
+import tomllib
 from dataclasses import replace
-from html import escape
+from html import escape, unescape
 from html.parser import HTMLParser
 
 import msgspec
@@ -82,6 +83,13 @@ def test_page_has_every_part(full_run, page):
     assert "verify run small.toml --set beam.length=0.4" in page.text
     assert "Mode 5 is not converged." in page.text
     assert "A strip <clamped & pinned>" in page.text
+
+
+def test_inputs_are_values_of_a_scene_file(full_run, html):
+    (text,) = re.findall(r"<pre[^>]*><code>(name = .*?)</code>", html, re.DOTALL)
+    inputs, beam = tomllib.loads(unescape(text)), full_run.scene.beam
+    assert (inputs["beam"]["length"], inputs["beam"]["supports"]) == (beam.length, list(beam.supports))
+    assert [force["phase_deg"] for force in inputs["drive"]["force"]] == [31.0, -77.0, 143.0]
 
 
 def test_figures_have_names_and_downloads(full_run, page):
