@@ -63,7 +63,7 @@ def quantities():
 
 def gates():
     """Every packaged scene with its drawing and its gates."""
-    from verify.report.beam_drawing import beam_figure
+    from verify.report.beam_drawing import NARROW, WIDTH, beam_figure
     from verify.report.plotting import figure_files
     from verify.report.summary import expected
     from verify.scene.file import packaged_scenes
@@ -71,13 +71,16 @@ def gates():
 
     yield GATES
     for scene in map(load_scene, packaged_scenes()):
-        svg = "".join(figure_files(replace(beam_figure(scene), id=scene.name), 0.0)[0].splitlines())
+        sizes = {"wide": WIDTH, "narrow": NARROW}
+        figures = {kind: replace(beam_figure(scene, width), id=f"{scene.name}-{kind}") for kind, width in sizes.items()}
+        svg = {kind: "".join(figure_files(figure, 0.0)[0].splitlines()) for kind, figure in figures.items()}
+        drawings = "".join(f'<div class="beam-drawing {kind}">{drawing}</div>' for kind, drawing in svg.items())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
             (f"`{one.id}`", f"{one.quantity} {words}", expected(one), f"{one.reference}: {one.why}")
             for one, words in zip(scene.gate, arguments, strict=True)
         ]
-        yield f'## {scene.name}\n\n{scene.title}. {scene.description}\n\n<div class="beam-drawing">{svg}</div>\n'
+        yield f"## {scene.name}\n\n{scene.title}. {scene.description}\n\n{drawings}\n"
         yield table(("gate", "quantity", "expected", "reference and why"), rows)
 
 

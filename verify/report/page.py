@@ -165,6 +165,8 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     bad, n = sum(line["passed"] is not True for line in lines), len(lines)
     passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
     good = f"{n} scenes, " + (f"all {passed} gates passed" if passed else "no gate ran")
+    none = sum(not line["gates"][1] for line in lines)
+    good += f", {none} without a gate" * bool(passed and none)
     good += f", --set skips {gates - passed}" * (gates > passed)
     return Result(
         summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",
