@@ -12,10 +12,10 @@ from verify.actuators.transducers import Stack as Stack
 from verify.analysis.comparison import ModeErrors as ModeErrors
 from verify.analysis.comparison import mode_errors as mode_errors
 from verify.analytic_modes import ExactModel as ExactModel
-from verify.answers import choose as choose
-from verify.answers import compare_frequencies as compare_frequencies
-from verify.answers import engine_chain as engine_chain
-from verify.answers import verdict as verdict
+from verify.answers.chains import engine_chain as engine_chain
+from verify.answers.frequencies import compare_frequencies as compare_frequencies
+from verify.answers.sizes import choose as choose
+from verify.answers.trust import verdict as verdict
 from verify.chain.statics import Bent as Bent
 from verify.chain.statics import bend as bend
 from verify.dynamics.arguments import Excitation as Excitation

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from verify.answers import engine_chain
+from verify.answers.chains import engine_chain
 from verify.commands.choose import relative_error
 from verify.commands.shared import (
     CHAINS,

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from verify.analysis.variants import Rules
-from verify.answers import choose as choose_sizes
+from verify.answers.sizes import choose as choose_sizes
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.convert import convert, literal, typed
 from verify.errors import InputError

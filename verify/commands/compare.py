@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from verify.answers import KINDS, compare_frequencies
+from verify.answers.frequencies import KINDS, compare_frequencies
 from verify.commands import shared
 from verify.compare.reading import UNITS, read_shapes, read_words, solve_model
 from verify.convert import typed
