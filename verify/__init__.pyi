@@ -12,6 +12,10 @@ from verify.actuators.transducers import Stack as Stack
 from verify.analysis.comparison import ModeErrors as ModeErrors
 from verify.analysis.comparison import mode_errors as mode_errors
 from verify.analytic_modes import ExactModel as ExactModel
+from verify.answers.chains import engine_chain as engine_chain
+from verify.answers.frequencies import compare_frequencies as compare_frequencies
+from verify.answers.sizes import choose as choose
+from verify.answers.trust import verdict as verdict
 from verify.chain.statics import Bent as Bent
 from verify.chain.statics import bend as bend
 from verify.dynamics.arguments import Excitation as Excitation
@@ -22,6 +26,7 @@ from verify.dynamics.free_vibration import FreeVibration as FreeVibration
 from verify.dynamics.free_vibration import free_vibration as free_vibration
 from verify.dynamics.result import Motion as Motion
 from verify.dynamics.simulate import simulate as simulate
+from verify.engines.judgement import judge_file as judge_file
 from verify.errors import InputError as InputError
 from verify.fem_beam import HermiteModel as HermiteModel
 from verify.linear.field import HarmonicField as HarmonicField

@@ -45,7 +45,7 @@ class SceneFile(pytest.File):
     """A scene file; its gates share one solution cache."""
 
     def collect(self) -> Iterable["GateItem"]:
-        """One item for each gate. A scene with errors is a collection error with their sentences."""
+        """One item for each gate. A scene with errors or without gates is a collection error with a sentence."""
         from verify.analysis.solution_cache import SolutionCache
         from verify.errors import InputError
         from verify.scene.load import load_scene
@@ -54,6 +54,8 @@ class SceneFile(pytest.File):
             scene = load_scene(self.path)
         except InputError as error:
             raise self.CollectError("\n".join(error.sentences)) from None
+        if not scene.gate:
+            raise self.CollectError(f"{self.path.name}: it has no gates, so nothing is judged: add a [[gate]]")
         cache = SolutionCache(scene.beam)
         for gate in scene.gate:
             yield GateItem.from_parent(self, name=gate.id, gate=gate, scene=scene, cache=cache)

@@ -164,6 +164,6 @@ DRIVE_UNITS = {"force": "N", "moment": "N m", "displacement": "m", "voltage": "V
 """Kind of a drive. force, moment: imposed forces, N, and moments, N m. displacement: imposed displacements, m.
 voltage, current: of actuators, V and A."""
 
-Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
+Reference = Literal["closed form", "independent method", "published", "other code", "measured", "regression"]
 """Reference of a gate's expected value. closed form: a formula. independent method: another derivation. published: a
-publication. other code: another program. regression: an earlier value of this package."""
+publication. other code: another program. measured: an experiment. regression: an earlier value of this package."""

@@ -1,4 +1,4 @@
-"""Pages made from the package into `docs/made` (scenes, quantities, gates), and its docstrings as plain text."""
+"""Pages made from the package into `docs/made` (scenes, quantities, gates), a report, docstrings as plain text."""
 
 import re
 from dataclasses import replace
@@ -63,7 +63,7 @@ def quantities():
 
 def gates():
     """Every packaged scene with its drawing and its gates."""
-    from verify.report.beam_drawing import beam_figure
+    from verify.report.beam_drawing import NARROW, WIDTH, beam_figure
     from verify.report.plotting import figure_files
     from verify.report.summary import expected
     from verify.scene.file import packaged_scenes
@@ -71,13 +71,16 @@ def gates():
 
     yield GATES
     for scene in map(load_scene, packaged_scenes()):
-        svg = "".join(figure_files(replace(beam_figure(scene), id=scene.name), 0.0)[0].splitlines())
+        sizes = {"wide": WIDTH, "narrow": NARROW}
+        figures = {kind: replace(beam_figure(scene, width), id=f"{scene.name}-{kind}") for kind, width in sizes.items()}
+        svg = {kind: "".join(figure_files(figure, 0.0)[0].splitlines()) for kind, figure in figures.items()}
+        drawings = "".join(f'<div class="beam-drawing {kind}">{drawing}</div>' for kind, drawing in svg.items())
         arguments = [" ".join(f"{key}={value}" for key, value in gate.arguments.items()) for gate in scene.gate]
         rows = [
             (f"`{one.id}`", f"{one.quantity} {words}", expected(one), f"{one.reference}: {one.why}")
             for one, words in zip(scene.gate, arguments, strict=True)
         ]
-        yield f'## {scene.name}\n\n{scene.title}. {scene.description}\n\n<div class="beam-drawing">{svg}</div>\n'
+        yield f"## {scene.name}\n\n{scene.title}. {scene.description}\n\n{drawings}\n"
         yield table(("gate", "quantity", "expected", "reference and why"), rows)
 
 
@@ -96,8 +99,18 @@ def make(_app):
         (MADE / f"{page.__name__}.md").write_text("\n".join(page()), "utf-8")
 
 
+def report(app, error):
+    """Run the paper's scene and write its report, which the first page shows."""
+    from verify.report.page import run_page
+    from verify.scene.run import run_scene
+
+    if error is None and app.builder.format == "html":
+        (Path(app.outdir) / "paper-report.html").write_text(run_page(run_scene("paper"), "verify run paper"), "utf-8")
+
+
 def setup(app):
-    """Write the generated pages before Sphinx reads any."""
+    """Write the generated pages before Sphinx reads any, and a report beside the pages."""
+    app.connect("build-finished", report)
     app.connect("builder-inited", make)
     app.connect("autodoc-process-docstring", plain, priority=400)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -47,6 +47,23 @@ def test_override_skips_gates(capsys):
     assert {one.name for one in Path("out").iterdir()} == {"bare_beam.length=0.5", "bare_beam.length=0.5.html"}
 
 
+def test_a_run_that_judges_nothing_has_not_passed(capsys):
+    head, _, tail = BARE.partition("[spectrum]")
+    Path("gates.toml").write_text(head + "[[gate]]" + tail.partition("[[gate]]")[2])
+    assert status_of(["run", "gates.toml", "--no-report"]) == 0
+    assert status_of(["run", "gates.toml", "--no-report", "--set", "beam.length=0.5"]) == 1
+    assert "nothing is judged" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("table", ["gate", "claim"])
+def test_an_emptied_list_is_refused_since_it_judges_nothing(capsys, table):
+    Path("empty.toml").write_text(f"{table} = []\n" + BARE.partition("[[gate]]")[0] + "[convergence]\ncounts = [9, 19]")
+    assert status_of(["run", "empty.toml", "--no-report"]) == 2
+    assert f"{table} = []" in capsys.readouterr().err
+    Path("empty.toml").write_text(BARE.partition("[[gate]]")[0] + "[convergence]\ncounts = [9, 19]")
+    assert status_of(["run", "empty.toml", "--no-report"]) == 0
+
+
 def test_several_scenes_have_an_index(capsys):
     assert status_of(["run", "bare.toml", "off.toml"]) == 1
     out, err = capsys.readouterr()

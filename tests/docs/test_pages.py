@@ -1,15 +1,23 @@
 """The documentation builds without a warning and without a network, and its links lead somewhere."""
 
 import re
+import shlex
 import socket
 import warnings
-from html import unescape
+from html import escape, unescape
 from pathlib import Path
 from urllib.parse import unquote
 
+import numpy as np
 import pytest
+from PIL import Image
+
+from verify import run_scene
+from verify.cli import status_of
 
 DOCS = Path(__file__).parents[2] / "docs"
+README = (DOCS.parent / "README.md").read_text("utf-8").replace("\n", " ")
+PHRASE = "1 m x 40 x 8 mm steel, clamped-free"
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +49,41 @@ def test_links_are_inside_and_lead_somewhere(built):
     places = {page: set(re.findall(r'\bid="([^"]+)"', text)) for page, text in pages.items()}
     lost = []
     for page, text in pages.items():
-        assert not re.search(r'<(?:script|img|link)[^>]*?\b(?:src|href)="[^"]*//', text), page.name
+        assert not re.search(r'<(?:script|img|link)[^>]*?\b(?:src|href)="(?!data:)[^"]*//', text), page.name
         for link in re.findall(r'<a [^>]*?href="([^":]+)"', text):
             path, _, place = unquote(unescape(link)).partition("#")
             goal = (page.parent / path).resolve() if path else page
             if not goal.exists() or (place and place not in places.get(goal, {place})):
                 lost.append(f"{page.name}: {link}")
     assert lost == []
+
+
+def test_the_first_page_shows_the_report_of_this_version(built):
+    assert 'src="paper-report.html"' in (built[0] / "index.html").read_text("utf-8")
+    run = run_scene("paper")
+    assert escape(run.verdict.headline) in (built[0] / "paper-report.html").read_text("utf-8")
+
+
+def made(line, folder):
+    """The picture that a command writes to a folder."""
+    words = shlex.split(line.removeprefix("verify "))
+    assert status_of([*words, "--charts", str(folder)]) == 0
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("errors-over-size", re.search(r"`(verify table [^`]*) --charts FOLDER`", README)[1]),
+        ("motor-force", "verify table preloaded-motor --study motor"),
+    ],
+)
+def test_pictures_are_those_of_this_version(tmp_path, name, line):
+    small = [
+        np.asarray(Image.open(folder / f"{name}.png").convert("L").resize((108, 70)), dtype=float)
+        for folder in (DOCS, made(line.replace("…", PHRASE), tmp_path))
+    ]
+    assert abs(small[0] - small[1]).mean() < 6.0  # of 255; 3 pixels of another font: 4.4, another legend: 8.8
 
 
 def test_reference_pages_list_what_the_package_has(built):

@@ -7,6 +7,7 @@ files. A command without `$ echo $?` below it ends with status 0.
 import re
 import runpy
 import shlex
+import subprocess
 import sys
 from pathlib import Path
 
@@ -17,7 +18,9 @@ from verify.cli import cli, status_of
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
-GUIDES = [ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control")]
+GUIDES = [
+    ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "compare", "continuous-integration")
+]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -69,6 +72,9 @@ def ran(line, capsys, monkeypatch):
         monkeypatch.setattr(sys, "argv", words)
         runpy.run_path(words[0], run_name="__main__")
         return 0, capsys.readouterr().out
+    if program == "pytest":
+        done = subprocess.run([sys.executable, "-m", "pytest", *words], capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout
     capsys.readouterr()
     status = status_of(words)
     out, err = capsys.readouterr()
@@ -88,7 +94,7 @@ def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch,
     for (line, printed), after in zip(commands, [*commands[1:], ["", ""]], strict=True):
         if line == "echo $?":
             assert int(printed) == status
-        elif not line.startswith("pytest"):
+        else:
             status, output = ran(line, capsys, monkeypatch)
             assert status == 0 or after[0] == "echo $?", output
             assert shows(printed, output), f"{line}\n{output}"

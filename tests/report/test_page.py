@@ -4,8 +4,9 @@ import json
 import re
 import shutil
 import subprocess
+import tomllib
 from dataclasses import replace
-from html import escape
+from html import escape, unescape
 from html.parser import HTMLParser
 
 import msgspec
@@ -84,6 +85,13 @@ def test_page_has_every_part(full_run, page):
     assert "A strip <clamped & pinned>" in page.text
 
 
+def test_inputs_are_values_of_a_scene_file(full_run, html):
+    (text,) = re.findall(r"<pre[^>]*><code>(name = .*?)</code>", html, re.DOTALL)
+    inputs, beam = tomllib.loads(unescape(text)), full_run.scene.beam
+    assert (inputs["beam"]["length"], inputs["beam"]["supports"]) == (beam.length, list(beam.supports))
+    assert [force["phase_deg"] for force in inputs["drive"]["force"]] == [31.0, -77.0, 143.0]
+
+
 def test_figures_have_names_and_downloads(full_run, page):
     figures = [figure for result in full_run.results.values() for figure in result.figures]
     labels = [attrs["aria-label"] for tag, attrs in page.tags if tag == "svg"]
@@ -109,7 +117,14 @@ def test_verdict_results_margins_caveats_and_speeds_lead(small_run, made_result)
     run = msgspec.structs.replace(small_run, results={"made": made}, margins=())
     text = run_page(run)
     also = "also: shear 2.5 % at 5, links 2 % at 5, wave 1.3 % at 5"
-    order = (run.verdict.headline, also, "Mode 5 is 1.73 % off.", ">links 2 % at 5<", "<details>", ">wave 1.3 % at 5<")
+    order = (
+        run.verdict.headline,
+        also,
+        "Mode 5 is 1.73 % off.",
+        ">links 2 % at 5<",
+        "<details class",
+        ">wave 1.3 % at 5<",
+    )
     order += (">step 0.4 % at 5<", "Mode 5 is not", ">tangential<", "<nav")
     places = [text.index(one) for one in order]
     assert places == sorted(places)
@@ -144,7 +159,9 @@ MEASURE = """<script>onload = () => { const f = document.getElementById("f"), d 
 const seen = ["body", ".soft", "td", "a", ".verdict strong"].map(q => { let e = d.querySelector(q), c = s(e).color, b;
   for (b = e; b && ["rgba(0, 0, 0, 0)", "transparent"].includes(s(b).backgroundColor); b = b.parentElement);
   return [c, s(b || d.body).backgroundColor]; });
-document.title = JSON.stringify({ wide: d.documentElement.scrollWidth, colours: seen }); }</script>"""
+const boxes = [...d.querySelectorAll(".drawing text")].map(e => e.getBoundingClientRect()).filter(b => b.height);
+document.title = JSON.stringify({ wide: d.documentElement.scrollWidth, colours: seen, labels: boxes.length,
+  right: Math.max(...boxes.map(b => b.right)), letter: Math.min(...boxes.map(b => b.height)) }); }</script>"""
 
 
 @pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium")
@@ -163,6 +180,9 @@ def test_browser_shows_it(html, tmp_path, dark, width):
     seen = json.loads(re.search(r"<title>(.*?)</title>", done.stdout)[1])
     assert "CONSOLE" not in done.stderr
     assert seen["wide"] <= width
+    assert seen["right"] <= width
+    assert seen["letter"] >= 9.0  # pixels
+    assert seen["labels"] == 10  # once, and none is left out: 3 forces of two lines, drive, section, two ends
 
     def luminance(colour):
         parts = [float(p) / 255.0 for p in re.findall(r"[\d.]+", colour)[:3]]

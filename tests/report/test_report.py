@@ -17,7 +17,7 @@ from verify.analysis.verdict import void
 from verify.errors import InputError
 from verify.report import archive
 from verify.report.archive import compare_runs, read_runs, save_run, saved_in
-from verify.report.beam_drawing import beam_figure
+from verify.report.beam_drawing import NARROW, WIDTH, beam_figure
 from verify.report.page import run_page
 from verify.report.plotting import MODEL_COLORS, drawn, figure_files, movie_image
 from verify.report.result import Column, Figure, Result, Table, to_json
@@ -117,8 +117,8 @@ def test_changed_input_is_named(small_run):
 SECTION = {"width": 0.017, "thickness": 0.0023, "youngs_modulus": 71e9, "density": 2710.0}
 
 
-def texts(scene):
-    return re.findall(r"<text[^>]*>([^<]*)</text>", figure_files(beam_figure(scene), 0.0)[0])
+def texts(scene, width=WIDTH):
+    return re.findall(r"<text[^>]*>([^<]*)</text>", figure_files(beam_figure(scene, width), 0.0)[0])
 
 
 def scene_of(**tables) -> Scene:
@@ -126,7 +126,8 @@ def scene_of(**tables) -> Scene:
     return scene_from({"name": "drawn", "beam": beam, **tables})
 
 
-def test_everything_is_named():
+@pytest.mark.parametrize("width", [WIDTH, NARROW])
+def test_everything_is_named(width):
     scene = scene_of(
         beam={
             "tension": 43.0,
@@ -141,7 +142,7 @@ def test_everything_is_named():
         },
         slider={"mass": 0.0031, "mu": 0.23, "position": 0.42},
     )
-    words = " ".join(texts(scene))
+    words = " ".join(texts(scene, width))
     beam = (
         "free",
         "guided",
@@ -157,9 +158,10 @@ def test_everything_is_named():
     assert [part for part in beam + loads if part not in words] == []
 
 
-def test_text_does_not_overlap():
+@pytest.mark.parametrize("width", [WIDTH, NARROW])
+def test_text_does_not_overlap(width):
     forces = [{"position": 0.2 + 0.004 * i, "amplitude": 1.0 + i} for i in range(5)]
-    svg = figure_files(beam_figure(scene_of(drive={"frequency_hz": 90.0, "force": forces})), 0.0)[0]
+    svg = figure_files(beam_figure(scene_of(drive={"frequency_hz": 90.0, "force": forces}), width), 0.0)[0]
     places = [(float(x), float(y)) for x, y in re.findall(r'<text [^>]*?x="([\d.]+)" y="([\d.]+)"', svg)]
     assert len(places) == len(set(places)) >= 10
     for i, (x, y) in enumerate(places):

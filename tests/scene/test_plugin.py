@@ -87,6 +87,19 @@ def test_wrong_scene_is_a_collection_error(pytester, scene):
     done.stdout.fnmatch_lines(["*did you mean 'mode.bracket'*"])
 
 
+def test_a_named_scene_that_judges_nothing_is_an_error(pytester, scene):
+    bare = SCENE.partition("[[gate]]")[0]
+    scene("none.toml", text=bare)
+    scene("empty.toml", text="gate = []\n" + bare)
+    pytester.makepyfile("def test_plain(): pass")
+    pytester.runpytest_inprocess("none.toml", "empty.toml").assert_outcomes(errors=2)
+    pytester.runpytest_inprocess(".").assert_outcomes(errors=1)  # none.toml asks for no gates
+
+
+def test_a_measured_reference_is_one(scene):
+    assert run_scene(scene(**{'why = "mu': 'reference = "measured"\nwhy = "mu'})).gates[0].gate.reference == "measured"
+
+
 def test_other_toml_files_are_left_alone(pytester, scene):
     scene("bad.toml", text="name = ")
     scene("config.toml", text="[tool]\nx = 1\n")

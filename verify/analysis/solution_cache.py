@@ -44,7 +44,7 @@ def theory_of(settings: Settings) -> str:
 def unproven(beam: Beam, settings: Settings = ()) -> str:
     """Reason why segments are not proven to lie below and elements above the exact frequencies; empty if proven."""
     if added := (*beam.features, *("section",) * bool(beam.section)):
-        return f"no bound is proven for a beam with beam.{added[0]}, leave it out"
+        return f"with beam.{added[0]} the exact frequency may lie outside of both models, give a beam without"
     chosen = {"theory": EULER, "grading": 1.0, "wall": DEFAULT.wall, **dict(settings)}
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}
     for name, value in chosen.items():

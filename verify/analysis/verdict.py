@@ -68,6 +68,10 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     margins: tuple[Margin, ...] = ()
     """Worst first."""
 
+    def __repr__(self) -> str:
+        """The level and the sentence."""
+        return f"<Verdict {self.level}: {self.headline}>"
+
     @property
     def holds(self) -> bool:
         """Whether findings in words may stand: of what is not trusted, sizes alone fail."""

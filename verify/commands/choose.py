@@ -4,14 +4,11 @@ from typing import Any
 
 import click
 
-from verify.analysis.margins import beam_margins
-from verify.analysis.sizing import choose as choose_sizes
-from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules
+from verify.answers.sizes import choose as choose_sizes
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.convert import convert, literal, typed
 from verify.errors import InputError
-from verify.report.result import Column, Result, Table
 from verify.scene.file import load_beam
 from verify.validation import Relative
 
@@ -37,28 +34,7 @@ def choose(
             raise InputError(f"rule = {key!r}: write it as RULE=VALUE, wall=half")
     chosen = convert({key: literal(text, key) for key, _, text in pairs}, Rules)
     modes, largest = _modes(mode), relative_error(error)
-    cache = SolutionCache(load_beam(scene, overrides).beam)
-    choices, skipped = choose_sizes(cache, modes, largest, chosen)
-    first = choices[0].variant.settings
-    sizes = [(choice.variant.model, choice.size.count) for choice in choices if choice.variant.settings == first]
-    margins = beam_margins(cache, sizes, mode=modes if isinstance(modes, int) else modes[-1], settings=first)
-    rows: list[tuple[object, ...]] = []
-    for choice in choices:
-        size, cost = choice.size, (choice.unknowns, choice.error, choice.expected_error, choice.run_time_s)
-        lower = ", ".join(map(str, choice.lower))
-        rows.append((choice.variant.title, size.count, size.mode, *cost, size.smaller, lower))
-    columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
-    columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
-    columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
-    notes = [f"{choice.variant.title}: {choice.size.known_by}" for choice in choices]
-    notes += ["error law: expected error, see docs/theory.md", "lower modes beyond it: errors above the limit at N"]
-    result = Result(
-        f"Smallest N from which on the frequency error of mode {mode} is at most {100.0 * largest:g} %.",
-        [Table("Sufficient sizes", [*columns, Column("lower modes beyond it")], rows, notes)],
-        warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
-        margins=margins,
-    )
-    show(result, **formats)
+    show(choose_sizes(load_beam(scene, overrides), modes, largest, chosen), **formats)
 
 
 def _modes(text: str) -> int | range:

@@ -1,24 +1,19 @@
 """`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
+from os.path import exists
 from pathlib import Path
 from typing import Any
 
 import click
 
+from verify.answers.frequencies import KINDS, compare_frequencies
 from verify.commands import shared
-from verify.compare.compare import Options
-from verify.compare.compare import compare as compare_list
-from verify.compare.reading import UNITS, read_frequencies, read_shapes, read_words, solve_model
-from verify.compare.shapes import compare_shapes, read_mesh
+from verify.compare.reading import UNITS, read_shapes, read_words, solve_model
 from verify.convert import typed
 from verify.errors import InputError
-from verify.io.mode_files import is_mesh
 from verify.scene.file import load_beam
 from verify.settings import THEORIES
 from verify.validation import Relative
-
-TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
-"""Suffixes of lists of frequencies, in addition to those that are of no mesh."""
 
 
 @click.command(cls=shared.BeamCommand)
@@ -35,7 +30,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
     type=click.Choice(list(UNITS)),
     help="Of the list. Default: its header's, else the one that fits the beam.",
 )
-@click.option("--kind", type=click.Choice(["segments", "elements"]), help="Candidates of one kind only.")
+@click.option("--kind", type=click.Choice(KINDS), help="Candidates of one kind only.")
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
@@ -77,24 +72,25 @@ def compare(
     if not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_beam(scene, overrides)
-    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory or THEORIES[0])
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
-    typed_list = None if Path(words[0] if words else "").exists() else read_words(words, unit)
+    frequencies = None if exists(words[0] if words else "") else read_words(words, unit)  # of any length: no error
     if model is not None:
         frequencies = solve_model(model, loaded.beam, count, mode)
-    elif typed_list is not None:
-        frequencies = typed_list
-    elif len(words) > 1:
+    elif frequencies is None and len(words) > 1:
         raise InputError(f"frequencies = {' '.join(words)}: give one file, or numbers alone")
-    elif (suffix := Path(words[0]).suffix.lower()) in TEXT or not is_mesh(suffix):
-        frequencies = read_frequencies(Path(words[0]), unit)
-    else:
-        frequencies = None
-    if frequencies is not None:
-        with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
-            result = compare_list(loaded, frequencies, forms, options, step)
-    else:
-        result = compare_shapes(loaded, read_mesh(Path(words[0]), loaded.beam.length), options)
+    with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
+        result = compare_frequencies(
+            loaded,
+            frequencies or Path(words[0]),
+            unit=unit,
+            shapes=forms,
+            count=count,
+            kind=kind,
+            mode=mode,
+            within=limit,
+            theory=theory or THEORIES[0],
+            progress=step,
+        )
     shared.show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from verify.commands.chain import fewest
+from verify.answers.chains import fewest
 from verify.commands.shared import CHAINS, BeamCommand, overrides_option, progress, scene_argument
 from verify.engines.description import describe
 from verify.engines.writers import write as write_chain

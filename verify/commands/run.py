@@ -48,7 +48,7 @@ class Task(NamedTuple):
 def run(
     scenes: tuple[str, ...], overrides: tuple[str, ...], folder: str, no_report: bool, keep: int, as_json: bool
 ) -> None:
-    """Run gates and studies of SCENE and write its report; exit 1 where a gate fails.
+    """Run gates and studies of SCENE and write its report; exit 1 where a gate fails, or it has gates and nothing ran.
 
     With several scenes, or none for all packaged ones, they run in parallel and FOLDER/index.html links to their
     reports. The latest report is FOLDER/SCENE.html; FOLDER/SCENE/TIME has the saved runs (index.html, run.json), which

@@ -10,8 +10,10 @@ from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 from verify.settings import DRIVE_UNITS
 
-WIDTH, EDGE = 8.4, 0.83
-"""Width of the drawing and of the margin at each end of the beam, inches."""
+WIDTH, NARROW = 8.4, 4.2
+"""Width of the drawing, inches: on a page, and on one of a telephone, where letters of the other would be too small."""
+EDGE = 0.1
+"""Margin at each end of the beam over the width of the drawing."""
 BODY, SLIDER, FORCE, SPRING, SOFT = MODEL_COLORS["segment"], MODEL_COLORS["fem"], "#cc3f76", "#2a9d5c", "#7d8590"
 THINNEST, THICKEST = 0.10, 0.34
 """Drawn thickness of sections, inches."""
@@ -22,11 +24,11 @@ DEVICE_UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotationa
 DEVICE_UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "amplitude": "N"}
 
 
-def beam_figure(scene: Any) -> Figure:
-    """The drawing as a figure; `scene` needs `beam`, `drive`, `forces`, `devices` and `slider`."""
+def beam_figure(scene: Any, width: float = WIDTH) -> Figure:
+    """The drawing as a figure, `width` in inches; `scene` needs `beam`, `drive`, `forces`, `devices` and `slider`."""
     from matplotlib.figure import Figure as MatplotlibFigure
 
-    sketch = _Sketch(scene, MatplotlibFigure().subplots())
+    sketch = _Sketch(scene, MatplotlibFigure().subplots(), width)
     beam = scene.beam
     kind = scene.drive.kind if scene.drive is not None else "force"
     what = "actuators" if kind in ELECTRICAL else f"{kind}s"
@@ -34,11 +36,11 @@ def beam_figure(scene: Any) -> Figure:
     counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
-        id="beam",
+        id="beam" if width == WIDTH else "beam-narrow",
         title="The beam",
         caption=f"{_length(beam.length)} long, {beam.supports[0]} at the left, {beam.supports[1]} at the right{there}.",
-        draw=lambda ax: _Sketch(scene, ax).frame(),
-        size=(WIDTH, sketch.top - sketch.bottom),
+        draw=lambda ax: _Sketch(scene, ax, width).frame(),
+        size=(width, sketch.top - sketch.bottom),
     )
 
 
@@ -49,8 +51,8 @@ def _length(x: float) -> str:
 class _Sketch:
     """Draws everything on axes whose unit is an inch; keeps the extent and the places taken by text."""
 
-    def __init__(self, scene: Any, ax: Any) -> None:
-        self.ax, self.beam = ax, scene.beam
+    def __init__(self, scene: Any, ax: Any, width: float) -> None:
+        self.ax, self.beam, self.width, self.edge = ax, scene.beam, width, max(EDGE * width, 0.5)
         self.top, self.bottom = 0.4, -0.4
         self.taken: list[tuple[float, float, float, float]] = []
         sizes = [(piece.bending_stiffness / piece.mass_per_length) ** 0.5 for piece in self.beam.pieces]
@@ -68,7 +70,7 @@ class _Sketch:
                 size = f"{_length(self.beam.width)} × {_length(self.beam.thickness)}"
             elif self.beam.diameter is not None:
                 size = f"⌀ {_length(self.beam.diameter)}"
-            self.text(0.5 * WIDTH, -self.heights[0], [size], down=True)
+            self.text(0.5 * self.width, -self.heights[0], [size], down=True)
         for device in scene.devices:
             words = [f"{value:.4g} {u}" for name, u in DEVICE_UNITS.items() if (value := getattr(device, name))]
             self.dashpot(self.at(device.position), self.half(device.position), words)
@@ -90,14 +92,14 @@ class _Sketch:
                 self.arrow((x, y + 0.6), (x, y + 0.03), FORCE)
             self.text(x, y + (0.4 if kind == "moment" else 0.64), words)
         if scene.drive is not None:
-            self.text(0.5 * WIDTH, self.top, [f"drive at {scene.drive.frequency_hz:g} Hz"])
+            self.text(0.5 * self.width, self.top, [f"drive at {scene.drive.frequency_hz:g} Hz"])
 
     def frame(self) -> None:
         self.ax.set_axis_off()
-        self.ax.set(xlim=(0.0, WIDTH), ylim=(self.bottom, self.top), aspect="equal")
+        self.ax.set(xlim=(0.0, self.width), ylim=(self.bottom, self.top), aspect="equal")
 
     def at(self, x: float) -> float:
-        return float(EDGE + (WIDTH - 2 * EDGE) * x / self.beam.length)
+        return float(self.edge + (self.width - 2 * self.edge) * x / self.beam.length)
 
     def half(self, x: float) -> float:
         end = 0.0
@@ -109,7 +111,7 @@ class _Sketch:
 
     def load(self, scene: Any, x: float) -> float:
         """Height of a mass or slider that stands on the beam near x."""
-        near = 0.25 * self.beam.length / (WIDTH - 2 * EDGE)
+        near = 0.25 * self.beam.length / (self.width - 2 * self.edge)
         if any(abs(mass.position - x) < near for mass in self.beam.mass):
             return 0.24
         return 0.22 if scene.slider and abs(scene.slider.initial_position(self.beam) - x) < near else 0.0
@@ -133,7 +135,7 @@ class _Sketch:
     def text(self, x: float, y: float, rows: list[str], down: bool = False) -> None:
         """Text above y, or below it: moved away from the beam, row by row, until nothing else stands there."""
         half = 0.5 * LETTER * max(map(len, rows))
-        x = min(max(x, half), WIDTH - half)
+        x = min(max(x, half), self.width - half)
         low, high = (y - ROW * len(rows), y) if down else (y, y + ROW * len(rows))
         crossed = [(b, t) for left, right, b, t in self.taken if left < x + half and right > x - half]
         while any(b < high - 0.01 and t > low + 0.01 for b, t in crossed):
@@ -146,22 +148,22 @@ class _Sketch:
     def sections(self) -> None:
         beam, start = self.beam, 0.0
         for piece, height in zip(beam.pieces, self.heights, strict=True):
-            self.box(self.at(start), -0.5 * height, self.at(piece.length) - EDGE, height, BODY, alpha=0.45)
+            self.box(self.at(start), -0.5 * height, self.at(piece.length) - self.edge, height, BODY, alpha=0.45)
             start += piece.length
         if beam.foundation:
-            n = int(4 * WIDTH)
+            n = int(4 * self.width)
             for i in range(n):
-                x = EDGE + (WIDTH - 2 * EDGE) * (i + 0.5) / n
+                x = self.edge + (self.width - 2 * self.edge) * (i + 0.5) / n
                 zigzag = ((x, 0.0), (x - 0.05, -0.16), (x + 0.05, -0.26), (x, -0.36))
                 self.line(*zigzag, color=SOFT, width=0.8, zorder=0)
-            self.line((EDGE, -0.36), (WIDTH - EDGE, -0.36), color=SOFT)
-            self.taken.append((EDGE, WIDTH - EDGE, -0.38, 0.0))
-            self.text(0.5 * WIDTH, -0.4, [f"foundation {beam.foundation:.4g} N/m²"], down=True)
+            self.line((self.edge, -0.36), (self.width - self.edge, -0.36), color=SOFT)
+            self.taken.append((self.edge, self.width - self.edge, -0.38, 0.0))
+            self.text(0.5 * self.width, -0.4, [f"foundation {beam.foundation:.4g} N/m²"], down=True)
         if beam.tension:
-            for x, out in ((EDGE - 0.14, -1), (WIDTH - EDGE + 0.14, 1)):
+            for x, out in ((self.edge - 0.14, -1), (self.width - self.edge + 0.14, 1)):
                 tail, head = sorted((x, x + 0.32 * out), reverse=(out > 0) != (beam.tension > 0))
                 self.arrow((tail, 0.0), (head, 0.0), SPRING)
-            self.text(WIDTH - 0.3, 0.2, [f"{beam.tension:.4g} N"])
+            self.text(self.width - 0.3, 0.2, [f"{beam.tension:.4g} N"])
 
     def support(self, x: float, half: float, support: str, out: int) -> None:
         if support in ("clamped", "guided"):
@@ -199,7 +201,7 @@ class _Sketch:
         """A patch on its sides of the beam, to scale along it; else a column of layers between beam and base."""
         x, tall = self.at(position), 0.42
         if hasattr(design, "sides"):
-            tall, length = 0.09, self.at(design.length) - EDGE
+            tall, length = 0.09, self.at(design.length) - self.edge
             for low in (y, -self.half(position) - tall)[: design.sides]:
                 self.box(x - 0.5 * length, low, length, tall, color)
         else:
@@ -230,7 +232,7 @@ class _Sketch:
         tops = []
         for foot in slider.foot:
             x, half = self.at(start + foot.offset), self.half(start + foot.offset)
-            length, sign = max(self.at(foot.length) - EDGE, 0.2), -1.0 if foot.face == "lower" else 1.0
+            length, sign = max(self.at(foot.length) - self.edge, 0.2), -1.0 if foot.face == "lower" else 1.0
             near, far = sorted((sign * (half + 0.08), sign * (half + 0.2)))
             self.box(x - 0.5 * length, near, length, far - near, SLIDER)
             self.taken.append((x - 0.5 * length, x + 0.5 * length, near - 0.05, far + 0.05))

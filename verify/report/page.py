@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 from verify.analysis import verdict
 from verify.files import write_whole
 from verify.formatting import with_unit
-from verify.report.beam_drawing import beam_figure
+from verify.report import beam_drawing
 from verify.report.plotting import figure_files, movie_image
-from verify.report.result import Column, Figure, Movie, Result, Table, plain, to_json
+from verify.report.result import Column, Figure, Movie, Result, Table, plain
 from verify.report.summary import environment, gates_sentence, gates_table, study_title
+from verify.scene.file import toml_text
 
 if TYPE_CHECKING:
     from verify.report.archive import Saved
@@ -70,7 +71,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
     above = {headline, *(why for _, why in problems)}
     listed = [(*where, text) for text, where in caveats.items() if text not in above]
     speeds = [table for result in run.results.values() for table in result.tables if table.title == SPEEDS]
-    sizes = (Column(name, format=".3g", percent=True) for name in ("trusted up to", "not above"))
+    sizes = (Column(name, format=".3g", percent=True) for name in ("trusted below", "not trusted above"))
     columns = [Column("level"), Column("margin"), *sizes, Column("condition"), Column("remedy")]
     rows: list[Any] = []
     for margin in (margin for margin in run.verdict.margins if margin.name != "gates"):  # they have a table
@@ -90,7 +91,7 @@ def run_page(run: "RunResult", command: str = "") -> str:
         *(_study_section(run, name) for name in run.results),
         Section("gates", "Gates", gates_sentence(run), tables=[replace(gates, rows=gate_rows)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
-        Section("inputs", "Inputs", code=to_json(scene), folded=True),
+        Section("inputs", "Inputs", code=_inputs(scene), folded=True),
     ]
     return render(
         name=scene.name,
@@ -101,10 +102,22 @@ def run_page(run: "RunResult", command: str = "") -> str:
         seconds=run.seconds,
         problems=[f"{what}: {why}" for what, why in problems if why not in headline],
         others=run.verdict.others,
-        drawing=beam_figure(scene),
+        drawing=beam_drawing.beam_figure(scene),
+        narrow=figure_files(beam_drawing.beam_figure(scene, beam_drawing.NARROW), 0.0)[0],
         sections=[part for part in sections if part.id in run.results or part.tables or part.caveats or part.code],
         command=command,
     )
+
+
+def _inputs(scene: Any) -> str:
+    """The values of a scene as TOML; its gates have a table."""
+
+    def given(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: one for key, part in value.items() if (one := given(part)) not in (None, [], {})}
+        return [given(one) for one in value if one is not None] if isinstance(value, list) else value
+
+    return toml_text(given({key: value for key, value in plain(scene).items() if key != "gate"}))
 
 
 def _study_section(run: "RunResult", name: str) -> Section:
@@ -152,6 +165,8 @@ def index_result(lines: Sequence[dict[str, Any]]) -> Result:
     bad, n = sum(line["passed"] is not True for line in lines), len(lines)
     passed, gates = (sum(line["gates"][i] for line in lines) for i in (0, 1))
     good = f"{n} scenes, " + (f"all {passed} gates passed" if passed else "no gate ran")
+    none = sum(not line["gates"][1] for line in lines)
+    good += f", {none} without a gate" * bool(passed and none)
     good += f", --set skips {gates - passed}" * (gates > passed)
     return Result(
         summary=(f"{bad} of {n} scenes failed" if bad else good) + f". Verdicts: {', '.join(counts)}.",

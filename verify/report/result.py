@@ -164,6 +164,11 @@ class Result:
         """How far it can be trusted, by its margins."""
         return verdict_of(self.margins) if self.margins else None
 
+    def __repr__(self) -> str:
+        """The verdict, or the summary, and what else there is."""
+        sentence = self.verdict.headline if self.verdict else self.summary
+        return f"<Result: {sentence} Tables: {', '.join(table.title for table in self.tables) or 'none'}>"
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON: verdict, summary, warnings, tables as records, and the data."""
         tables = [{"title": table.title, "rows": table.records()} for table in self.tables]

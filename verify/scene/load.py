@@ -80,6 +80,8 @@ def _argument_errors(tables: dict[str, Any]) -> Iterator[str]:
     """A sentence for each gate and claim with an unknown quantity or wrong arguments."""
     for table in ("gate", "claim"):
         entries = tables[table] if isinstance(tables.get(table), list) else []
+        if tables.get(table) == []:
+            yield f"{table} = []: nothing is judged, give a [[{table}]] or leave the key out"
         for entry in (entry for entry in entries if isinstance(entry, dict)):
             name, arguments = entry.get("quantity"), entry.get("arguments", {})
             of_run = table == "claim" and not arguments

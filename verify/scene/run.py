@@ -22,6 +22,7 @@ from verify.studies.tables import premises
 if TYPE_CHECKING:
     from verify.report.result import Result
 
+ADD = "add a gate or a study, see docs/your-beam.md"
 Progress: TypeAlias = Callable[[str], None]
 
 
@@ -72,6 +73,10 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Units, linear theory under the drive and under the weight of the slider."""
     seconds: float
 
+    def __repr__(self) -> str:
+        """The verdict and the gates in words."""
+        return f"<RunResult {self.scene.name}: {self.verdict.headline} {self.gates_in_words}>"
+
     @property
     def failed(self) -> tuple[GateResult, ...]:
         """Gates outside their bands, or that could not be evaluated."""
@@ -79,8 +84,9 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def passed(self) -> bool:
-        """Whether no gate failed."""
-        return not self.failed
+        """Whether no gate failed; not where the scene has gates, and neither they nor a study ran."""
+        skipped = all(gate.passed is None for gate in self.gates)
+        return not self.failed and not (self.gates and skipped and not self.results)
 
     @property
     def gates_in_words(self) -> str:
@@ -101,7 +107,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             failed = ", ".join(result.id for result in self.failed)
             margins.append(void("gates", f"{self.gates_in_words}, {failed}", leads=True))
         elif not (judged or self.results):
-            margins.append(void("the run", "no study and no gate ran", "add a gate or a study, see docs/your-beam.md"))
+            remedy = "leave --set out, or set gate.ID.expect for the new values" if self.gates else ADD
+            margins.append(void("the run", "no study and no gate ran, so nothing is judged", remedy))
         verdict = verdict_of(margins)
         if verdict.level != "trusted" or any(margin.is_error for margin in margins) or not judged:
             return verdict

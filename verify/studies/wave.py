@@ -216,7 +216,9 @@ def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str, moved
 
 
 def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
-    """Motion of surface points of the middle half over one period.
+    """Motion of surface points about the middle over one period: of the middle half, at most three half waves of it.
+
+    Fewer than two points in half a wave show a wave of another length.
 
     (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
     metres, that magnification, largest true ratio of width to height).
@@ -224,7 +226,8 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     from verify.travelling_wave import surface_motion
 
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
-    places = np.linspace(0.25, 0.75, POINTS) * field.beam.length
+    half = min(0.25, 1.5 / max(_half_waves(field), 1.0))
+    places = np.linspace(0.5 - half, 0.5 + half, POINTS) * field.beam.length
     along = (surface_motion(field.beam, field.rotation(places), places)[:, None] * turn).real
     up = (field.deflection(places)[:, None] * turn).real
     magnified = float(0.42 * (places[1] - places[0]) / abs(along).max())
@@ -232,9 +235,21 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     return places[:, None] + magnified * along, up, magnified, float(ratio.max())
 
 
+def _half_waves(field: "HarmonicField") -> float:
+    """Half waves of the drive along the beam; 0 where no wave travels."""
+    from verify.linear.field import travelling_wavenumber
+
+    return (travelling_wavenumber(field.beam, float(field.frequency_hz)) or 0.0) * field.beam.length / np.pi
+
+
+def _sampled(field: "HarmonicField") -> Any:
+    """Positions for smooth lines, at least 16 in half a wave, m."""
+    return np.linspace(0.0, field.beam.length, max(601, int(16 * _half_waves(field)) + 1))
+
+
 def _envelopes(fields: Fields, title: str) -> Figure:
     """Amplitude over the beam on each model."""
-    x = np.linspace(0.0, fields[EXACT].beam.length, 601)
+    x = _sampled(fields[EXACT])
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
     return line_chart("wave-envelopes", title, ENVELOPES, lines, ("x", "m"), ("amplitude", "m"))
 
@@ -255,7 +270,7 @@ def _movie(fields: Fields, count: int) -> Callable[[Axes], Any]:
     length, (x_surface, height, *_) = fields[EXACT].beam.length, ellipses(fields[EXACT])
     lines, largest = list[MovingLine](), 0.0
     for model, field in fields.items():
-        x = np.linspace(0.0, length, (count if MODELS[model].sized else 160) + 1)
+        x = np.linspace(0.0, length, count + 1) if MODELS[model].sized else _sampled(field)
         wave = field.deflection(x)
         largest = max(largest, float(abs(wave).max()))
         form = {"analytic": "-", "segment": "-o"}.get(model, "x")

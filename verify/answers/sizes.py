@@ -1,0 +1,52 @@
+"""How many segments or elements are enough."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from verify.analysis.margins import beam_margins
+from verify.analysis.sizing import choose as choose_sizes
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.variants import Rules
+from verify.answers.beams import AnyBeam, named
+from verify.blas import one_blas_thread
+from verify.convert import convert
+from verify.errors import InputError
+from verify.report.result import Column, Result, Table
+from verify.validation import check_integer, check_number
+
+
+@one_blas_thread()
+def choose(beam: AnyBeam, mode: int | range, error: float, rules: Rules | Mapping[str, Any] | None = None) -> Result:
+    """Smallest number of segments and of elements from which on the frequency error is at most `error`, and their time.
+
+    `beam`: a beam, the name of a packaged scene, the path of one, or a phrase 'beam: 1 m x 40 x 8 mm steel'. `mode`:
+    from 1, or all of a range. `error`: relative. `rules`: settings of the models, {"wall": ("half", "gregory")}.
+    A row of the table, `tables[0].records()`, is a model. Raises InputError.
+    """
+    first_mode, last = (mode.start, mode.stop - 1) if isinstance(mode, range) else (mode, mode)
+    if isinstance(mode, range) and (mode.step != 1 or not 0 < first_mode <= last):
+        raise InputError(f"mode = {mode!r}: give one mode, or all of a range(1, 13), numbered from 1")
+    check_integer("mode", last, 1)
+    check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
+    cache, given = SolutionCache(named(beam).beam), rules if isinstance(rules, Rules) else convert(rules or {}, Rules)
+    choices, skipped = choose_sizes(cache, mode, error, given)
+    first = choices[0].variant.settings
+    sizes = [(choice.variant.model, choice.size.count) for choice in choices if choice.variant.settings == first]
+    margins = beam_margins(cache, sizes, mode=last, settings=first)
+    rows: list[tuple[object, ...]] = []
+    for choice in choices:
+        size, cost = choice.size, (choice.unknowns, choice.error, choice.expected_error, choice.run_time_s)
+        lower = ", ".join(map(str, choice.lower))
+        rows.append((choice.variant.title, size.count, size.mode, *cost, size.smaller, lower))
+    columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
+    columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
+    columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
+    notes = [f"{choice.variant.title}: {choice.size.known_by}" for choice in choices]
+    notes += ["error law: expected error, see docs/theory.md"]
+    which = f"{first_mode}-{last}" if last > first_mode else f"{last}"
+    return Result(
+        f"Smallest N from which on the frequency error of mode {which} is at most {100.0 * error:g} %.",
+        [Table("Sufficient sizes", [*columns, Column("lower modes above the limit")], rows, notes)],
+        warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
+        margins=margins,
+    )
