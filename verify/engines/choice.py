@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import RigidChain, describe
+from verify.engines.description import describe
 from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Integrator, Scheme
 from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError
@@ -143,32 +143,25 @@ def trade(
     for count in links:
         chain = describe(beam, count, wall=wall, in_space=in_space, damping=damping)
         every = simulated_chain(chain, step, row)
-        plane = simulated_chain(chain, step, row, "bending") if in_space else every
-        plain = _candidate(chain, plane, plane, every, modes, 0.0)
-        found.append(plain)
-        if plain.stable or in_space or not damping or every.scheme not in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS):
-            continue
-        for beta in (max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25):
-            inertias = armature(every, beta)
-            heavier = replace(every, mass=every.mass + np.diag(inertias))
-            made = _candidate(chain, every, heavier, heavier, modes, beta)
-            if made.stable and inertias.any():
-                found.append(made)
+        plain = simulated_chain(chain, step, row, "bending") if in_space else every
+        hertz, file = plain.modal[0][:modes] / (2.0 * np.pi), plain.modes
+        space = hertz / chain.exact_hz(n_modes=len(hertz)) - 1.0
+        betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
+        heavy = not in_space and damping and every.scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS)
+        for beta in betas if heavy else betas[:1]:
+            inertias = armature(every, beta) if beta else np.zeros(1)
+            run = replace(every, mass=every.mass + np.diag(inertias)) if beta else every
+            # beta has its margin already, and its limit is a few percent beyond its own step
+            stable = step <= (1.0 if beta else MARGIN) * run.limit
+            if beta and not (stable and inertias.any()):
+                continue
+            after = (run if beta else plain).modes
+            time = after.hz[:modes] / file.file_hz[:modes] - 1.0
+            error, numerical = (1.0 + space) * (1.0 + time) - 1.0, after.zeta[:modes] - file.file_zeta[:modes]
+            found.append(Candidate(count, beta, every.omega_max, run.limit, stable, space, time, error, numerical))
+            if stable:
                 break
     return found
-
-
-def _candidate(
-    chain: RigidChain, file: Simulated, run: Simulated, every: Simulated, modes: int, beta: float
-) -> Candidate:
-    """`file` without armature, `run` with it, `every` axis of it."""
-    at, hertz = slice(modes), file.modal[0] / (2.0 * np.pi)
-    space = hertz[at] / chain.exact_hz(n_modes=len(hertz[at])) - 1.0
-    time = run.modes.hz[at] / file.modes.file_hz[at] - 1.0
-    # beta has its margin already, and its limit is a few percent beyond its own step
-    stable = every.step <= (1.0 if beta else MARGIN) * every.limit
-    error, numerical = (1.0 + space) * (1.0 + time) - 1.0, run.modes.zeta[at] - file.modes.file_zeta[at]
-    return Candidate(chain.count, beta, every.omega_max, every.limit, stable, space, time, error, numerical)
 
 
 def choose(candidates: Sequence[Candidate], mode: int, within: float) -> Candidate | None:

@@ -20,7 +20,7 @@ from verify.validation import check_integer, check_number
 
 UNCOUPLED = 1e-9
 """Modal damping c_ij over (c_ii c_jj)^(1/2) + (omega_i omega_j)^(1/2) that leaves poles as they are."""
-SINGULAR = 1e-10
+SINGULAR = 1e-12
 """Eigenvalue of K with a unit diagonal that is 0 but for rounding."""
 GROWTH = 1e-12
 """Rounding of |lambda| - 1, in one step, of a motion that does not grow."""
@@ -97,7 +97,7 @@ class Simulated:
         except np.linalg.LinAlgError:
             inverse = np.zeros(1)
         if inverse[-1] <= 0.0:
-            raise InputError("mass: it is not positive, give every link a mass and an inertia")
+            raise InputError("mass, stiffness: they are not positive, give every link a mass and an inertia")
         omega2 = np.where(np.arange(len(inverse)) < loose, 0.0, 1.0 / inverse - shift)
         shapes = shapes / np.sqrt(inverse)
         return np.sqrt(omega2), shapes.T @ damping @ shapes, basis @ shapes
@@ -133,7 +133,7 @@ class Simulated:
             x, d, n = omega[group], damping[np.ix_(group, group)], len(group)
             s, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.diag(x)], [-np.diag(x), -d]]))
             shapes = vectors[n:]
-            share = np.abs(shapes) ** 2 / np.sum(np.abs(shapes) ** 2, axis=0)
+            share = abs(shapes) ** 2 / np.sum(abs(shapes) ** 2, axis=0)
             size = np.sum(shapes**2, axis=0)
             c, k = (np.sum(shapes * (a @ shapes), axis=0) / size for a in (d, np.diag(x**2)))
             upper = np.flatnonzero(s.imag >= 0.0)
@@ -185,6 +185,8 @@ class Simulated:
     @cached_property
     def _limit(self) -> tuple[float, Array]:
         """(largest stable step, s, shape over the unknowns of the motion that grows first)."""
+        from scipy.linalg import eigh
+
         omega, damping, shapes = self.modal
         if self.scheme.limit == inf:
             return inf, shapes[:, -1]
@@ -200,7 +202,8 @@ class Simulated:
             before, value = value, -half + float(np.sqrt(half**2 - k * np.sum((omega * shape) ** 2) / m))
             if value <= before * (1.0 + 1e-13):
                 break
-            shape = _lowest(np.diag(m * value**2 + k * omega**2) + c * value * damping)
+            matrix = np.diag(m * value**2 + k * omega**2) + c * value * damping
+            shape = eigh(matrix, subset_by_index=[0, 0])[1][:, 0]
         return 1.0 / value, shapes @ shape
 
     @property
@@ -215,8 +218,8 @@ class Simulated:
 
     @property
     def substeps(self) -> int:
-        """Number of equal parts of the step that are stable; 0: none are."""
-        return ceil(self.step / self.limit) if self.limit else 0
+        """Least number of equal parts of the step that are stable; 0: no number is."""
+        return max(ceil(self.step / self.limit), 1) if self.limit else 0
 
     @property
     def limiting(self) -> dict[str, float]:
@@ -245,7 +248,7 @@ class Simulated:
             return np.asarray(abs(error) <= within)
 
         steps = np.geomspace(1e-6, 4.0, 400) / abs(pole[0])
-        if (bad := ~good(steps)).sum() == 0:
+        if not (bad := ~good(steps)).any():
             return inf
         last = int(bad.argmax())
         low, high = (steps[last - 1] if last else 0.0), steps[last]
@@ -268,13 +271,6 @@ def _hertz(s: ComplexArray) -> Array:
 def _ratio(s: ComplexArray) -> Array:
     """-Re s/|s|, 0 of a rigid motion."""
     return np.asarray(-s.real / np.where(s == 0.0, 1.0, abs(s)))
-
-
-def _lowest(matrix: Array) -> Array:
-    """Eigenvector of the smallest eigenvalue."""
-    from scipy.linalg import eigh
-
-    return np.asarray(eigh(matrix, subset_by_index=[0, 0])[1][:, 0])
 
 
 def _reach(scheme: Scheme, s: ComplexArray) -> tuple[float, int]:
