@@ -4,12 +4,13 @@ from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from scipy.optimize import linear_sum_assignment
 
 from verify import Beam, SegmentModel
 from verify.engines import integrators as table
 from verify.engines.choice import armature, band, choose, compensated, largest_mode, largest_step, rayleigh, trade
-from verify.engines.integrators import INTEGRATORS, Integrator, generalised_alpha, hht, integrator, newmark
+from verify.engines.integrators import INTEGRATORS, generalised_alpha, hht, newmark, scheme_of
 from verify.engines.steps import Simulated
 from verify.errors import InputError
 
@@ -23,7 +24,7 @@ EVERY = [A, B, IE, CD, newmark(0.25), newmark(1 / 12), newmark(0.3, 0.6), genera
 
 
 def stepped(mass, damping, stiffness, step, scheme, **more):
-    return Simulated(mass, damping, stiffness, step, Integrator("", "", scheme, ""), **more)
+    return Simulated(mass, damping, stiffness, step, scheme, **more)
 
 
 def mode(x, zeta, scheme):
@@ -227,15 +228,15 @@ def test_drag_and_dashpots_by_closed_forms():
 
 
 def test_links_for_a_step_by_the_trade():
-    rows = trade(STRIP, (4, 5, 6, 8, 12), 1e-3, integrator("mujoco"), damping=0.01)
+    rows = trade(STRIP, (4, 5, 6, 8, 12), 1e-3, scheme_of("mujoco"), damping=0.01)
     assert choose(rows, 2, 0.01).links == 6
     assert choose(rows, 3, 0.01) is None
     assert largest_mode(rows, 0.01) == 2
     assert [row.links for row in rows if row.beta] == [8, 12]
     assert all(row.limit > 1e-3 for row in rows if row.beta)
-    plain = trade(STRIP, (8,), 1e-4, integrator("mujoco"))[0]
+    plain = trade(STRIP, (8,), 1e-4, scheme_of("mujoco"))[0]
     assert 100 * plain.space == pytest.approx([0.0014, -0.052, -0.81], abs=0.006)
-    damped = trade(STRIP, (12,), 1e-3, integrator("mujoco", "discrete"))[0]
+    damped = trade(STRIP, (12,), 1e-3, scheme_of("mujoco", "discrete"))[0]
     assert 100 * damped.numerical == pytest.approx([2.15, 13.2, 32.9], abs=0.06)
     for engine, setting, figure in (("exudyn", "TrapezoidalIndex2", 0.463e-3), ("dart", "", 0.026e-3)):
         file = strip(12).simulated(1e-3, engine, setting)
@@ -255,15 +256,35 @@ def test_two_milliseconds_of_a_cable():
     assert (modes.file_hz[2], modes.file_zeta[2]) == pytest.approx((115.47, 0.1755), rel=1e-3)
 
 
+def test_hundred_links_about_three_axes_with_dashpots_of_their_own():
+    """Of 300 unknowns the poles of A, of a floating chain and of an axis alone are those of the whole."""
+    chain = strip(100, 0.01, in_space=True)
+    file = chain.simulated(2e-5, "mujoco")
+    uneven = file.damping * np.linspace(1.0, 1.7, 300)
+    whole = stepped(file.mass, uneven, file.stiffness, 2e-5, A, axes=file.axes)
+    plane = [slice(100), slice(100)]
+    part = stepped(file.mass[*plane], uneven[*plane], file.stiffness[*plane], 2e-5, A)
+    for mode in range(3):
+        same = int(abs(whole.modes.hz - part.modes.hz[mode]).argmin())
+        assert whole.modes.hz[same] == pytest.approx(part.modes.hz[mode], rel=1e-9)
+        assert whole.modes.zeta[same] == pytest.approx(part.modes.zeta[mode], rel=1e-8)
+    assert whole.limit <= part.limit
+    floating = SegmentModel(replace(STRIP, supports=("free", "free")), 9).rigid_chain(damping=0.01)
+    modes = floating.simulated(1e-4, "mujoco").modes
+    assert modes.file_hz[:2] == pytest.approx(0.0, abs=1e-9)
+    assert modes.file_hz[2] / sqrt(1 - 0.01**2) == pytest.approx(floating.frequencies_hz()[0], rel=1e-9)
+    assert modes.file_zeta[2] == pytest.approx(0.01, rel=1e-9)
+
+
 def test_every_row_is_found_or_refused_by_its_reason():
     for row in INTEGRATORS:
         if row.scheme:
-            assert integrator(row.engine.upper(), row.setting.lower()) is row
+            assert scheme_of(row.engine.upper(), row.setting.lower()) is row.scheme
         else:
             with pytest.raises(InputError, match=row.remark.split(",")[0]):
-                integrator(row.engine, row.setting)
+                scheme_of(row.engine, row.setting)
     for wrong in (("mujocco", ""), ("mujoco", "Eular")):
         with pytest.raises(InputError, match="did you mean"):
-            integrator(*wrong)
+            scheme_of(*wrong)
     with pytest.raises(InputError, match="stiffness"):
         assert stepped(np.eye(2), np.zeros((2, 2)), -np.eye(2), 1.0, A).limit

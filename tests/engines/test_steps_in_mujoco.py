@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from tests.engines.test_integrators import STRIP, apart, strip
 from verify import SegmentModel
 from verify.engines.choice import armature
-from verify.engines.integrators import integrator
+from verify.engines.integrators import scheme_of
 from verify.engines.steps import Simulated
 from verify.engines.writers import mjcf
 
@@ -37,7 +37,7 @@ class Engine:
             model.dof_damping[:] = damping
         if inertias is not None:
             model.dof_armature[:] = inertias
-        self.data, self.row = mujoco.MjData(model), integrator("mujoco", setting)
+        self.data, self.scheme = mujoco.MjData(model), scheme_of("mujoco", setting)
 
     def run(self, state, steps=1):
         mujoco.mj_resetData(self.model, self.data)
@@ -68,7 +68,7 @@ def simulated(chain, engine, step, **more):
     mujoco.mj_fullM(model, data, mass)
     stiffness = np.diag(np.reshape(model.jnt_stiffness, (model.nv, -1))[:, 0])
     return Simulated(
-        mass, np.diag(np.reshape(model.dof_damping, (model.nv, -1))[:, 0]), stiffness, step, engine.row, **more
+        mass, np.diag(np.reshape(model.dof_damping, (model.nv, -1))[:, 0]), stiffness, step, engine.scheme, **more
     )
 
 
@@ -79,10 +79,8 @@ def test_multipliers_with_unequal_dashpots(setting):
     engine = Engine(strip(12), step, setting, damping)
     predicted = simulated(strip(12), engine, step)
     assert apart(engine.multipliers(), predicted.multipliers) < 1e-7
-    rows = (integrator("mujoco", one) for one in SETTINGS)
-    others = {id(row.scheme): row for row in rows if row.scheme != engine.row.scheme}
-    for row in others.values():
-        wrong = Simulated(predicted.mass, predicted.damping, predicted.stiffness, step, row)
+    for other in {scheme_of("mujoco", one) for one in SETTINGS} - {engine.scheme}:
+        wrong = Simulated(predicted.mass, predicted.damping, predicted.stiffness, step, other)
         assert apart(engine.multipliers(), wrong.multipliers) > 1e-6
 
 

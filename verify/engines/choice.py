@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.description import describe
-from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Integrator, Scheme
+from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme
 from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError
 from verify.problem.beam import Beam
@@ -128,7 +128,7 @@ def trade(
     beam: Beam,
     links: Sequence[int],
     step: float,
-    row: Integrator,
+    scheme: Scheme,
     *,
     modes: int = 3,
     damping: float = 0.0,
@@ -142,12 +142,12 @@ def trade(
     found = list[Candidate]()
     for count in links:
         chain = describe(beam, count, wall=wall, in_space=in_space, damping=damping)
-        every = simulated_chain(chain, step, row)
-        plain = simulated_chain(chain, step, row, "bending") if in_space else every
+        every = simulated_chain(chain, step, scheme)
+        plain = simulated_chain(chain, step, scheme, "bending") if in_space else every
         hertz, file = plain.modal[0][:modes] / (2.0 * np.pi), plain.modes
         space = hertz / chain.exact_hz(n_modes=len(hertz)) - 1.0
         betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
-        heavy = not in_space and damping and every.scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS)
+        heavy = not in_space and damping and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS)
         for beta in betas if heavy else betas[:1]:
             inertias = armature(every, beta) if beta else np.zeros(1)
             run = replace(every, mass=every.mass + np.diag(inertias)) if beta else every

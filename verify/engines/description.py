@@ -185,10 +185,10 @@ class RigidChain:
 
         About all axes or one. Raises InputError for an unknown engine or setting.
         """
-        from verify.engines.integrators import integrator
+        from verify.engines.integrators import scheme_of
         from verify.engines.steps import simulated_chain
 
-        return simulated_chain(self, step, integrator(engine, setting), axis)
+        return simulated_chain(self, step, scheme_of(engine, setting), axis)
 
 
 @lru_cache(maxsize=16)

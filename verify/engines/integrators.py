@@ -197,15 +197,15 @@ INTEGRATORS = (
 """The first setting of an engine is its default."""
 
 
-def integrator(engine: str, setting: str = "") -> Integrator:
-    """The row of an engine, by default its first; capitals do not matter. Raises InputError."""
+def scheme_of(engine: str, setting: str = "") -> Scheme:
+    """The scheme of an engine, by default of its first row; capitals do not matter. Raises InputError."""
     rows = [row for row in INTEGRATORS if row.engine.casefold() == str(engine).casefold()]
     if not rows:
         check_choice("engine", engine, tuple(dict.fromkeys(row.engine for row in INTEGRATORS)))
-    found = [row for row in rows if row.setting.casefold() == (setting or rows[0].setting).casefold()]
-    if not found:
+    named = {row.setting.casefold(): row for row in rows}
+    if (name := setting or rows[0].setting).casefold() not in named:
         check_choice("integrator", setting, [row.setting for row in rows])
-    if found[0].scheme is None:
-        text = f"has no springs in N m/rad: {found[0].remark}, choose another of {engine}"
-        raise InputError(f"integrator = {shown(found[0].setting)} {text}")
-    return found[0]
+    if (scheme := (row := named[name.casefold()]).scheme) is None:
+        text = f"has no springs in N m/rad: {row.remark}, choose another of {engine}"
+        raise InputError(f"integrator = {shown(setting)} {text}")
+    return scheme

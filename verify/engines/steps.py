@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.arrays import Array, BoolArray, ComplexArray, Indices
 from verify.engines.description import Axis, RigidChain
-from verify.engines.integrators import REAL, Integrator, Scheme
+from verify.engines.integrators import REAL, Scheme
 from verify.errors import InputError
 from verify.validation import check_integer, check_number
 
@@ -53,7 +53,7 @@ class Modes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
-    """M, C, K (n, n) of a chain about rest, with joint armature in M, in steps h (s) of an integrator.
+    """M, C, K (n, n) of a chain about rest, with joint armature in M, in steps h (s) of a scheme.
 
     Modes ascend by undamped frequency. `axes`: label of every unknown, say "bending"; `constraints`: rows (m, n) that
     are zero. Raises InputError for a mass or stiffness matrix that is not positive, up to rigid motions.
@@ -63,19 +63,12 @@ class Simulated:
     damping: Array
     stiffness: Array
     step: float
-    integrator: Integrator
+    scheme: Scheme
     axes: Sequence[str] = ()
     constraints: Array | None = None
 
     def __post_init__(self) -> None:
         check_number("step", self.step, "s", above=0)
-
-    @property
-    def scheme(self) -> Scheme:
-        """Scheme of the integrator. Raises InputError for a row without one."""
-        if self.integrator.scheme is None:
-            raise InputError(f"integrator = {self.integrator.setting!r}: {self.integrator.remark}, choose another")
-        return self.integrator.scheme
 
     @cached_property
     def modal(self) -> tuple[Array, Array, Array]:
@@ -85,8 +78,8 @@ class Simulated:
         constrained = self.constraints is not None and len(self.constraints)
         basis = null_space(self.constraints) if constrained else np.eye(len(self.mass))
         mass, damping, stiffness = (basis.T @ one @ basis for one in (self.mass, self.damping, self.stiffness))
-        scale = np.sqrt(np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0))
-        relative = eigh(stiffness / np.outer(scale, scale), eigvals_only=True)
+        scale = np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), 1.0) ** -0.5
+        relative = eigh(stiffness * np.outer(scale, scale), eigvals_only=True)
         loose = int((relative < SINGULAR).sum())
         if relative[0] < -SINGULAR or loose == len(relative):
             raise InputError("stiffness: it is not positive, judge a chain with springs and stable at rest")
@@ -108,7 +101,7 @@ class Simulated:
         from scipy.sparse.csgraph import connected_components
 
         omega, damping, _ = self.modal
-        scales = (np.sqrt(abs(one)) for one in (np.diag(damping), omega))
+        scales = (np.sqrt(abs(one)) for one in (np.diag(damping), np.maximum(omega, omega[omega > 0.0][0])))
         _, labels = connected_components(abs(damping) > UNCOUPLED * sum(np.outer(one, one) for one in scales))
         _, inverse, sizes = np.unique(labels, return_inverse=True, return_counts=True)
         groups = [np.flatnonzero(inverse == i) for i in np.flatnonzero(sizes > 1)]
@@ -132,7 +125,8 @@ class Simulated:
         for group in groups:
             x, d, n = omega[group], damping[np.ix_(group, group)], len(group)
             s, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.diag(x)], [-np.diag(x), -d]]))
-            shapes = vectors[n:]
+            still = np.sum(abs(vectors[n:]) ** 2, axis=0) < REAL**2  # a rigid motion at rest has no rates
+            shapes = np.where(still, vectors[:n], vectors[n:])
             share = abs(shapes) ** 2 / np.sum(abs(shapes) ** 2, axis=0)
             size = np.sum(shapes**2, axis=0)
             c, k = (np.sum(shapes * (a @ shapes), axis=0) / size for a in (d, np.diag(x**2)))
@@ -293,8 +287,8 @@ def _reach(scheme: Scheme, s: ComplexArray) -> tuple[float, int]:
     return (low / size if low > 2e-3 else 0.0), int(grows(high).argmax())
 
 
-def simulated_chain(chain: RigidChain, step: float, row: Integrator, axis: Axis | None = None) -> Simulated:
-    """A chain in the steps of an integrator, about all axes of its hinges or one."""
+def simulated_chain(chain: RigidChain, step: float, scheme: Scheme, axis: Axis | None = None) -> Simulated:
+    """A chain in the steps of a scheme, about all axes of its hinges or one."""
     from scipy.linalg import block_diag
 
     axes, damping, labels = chain.axes if axis is None else (axis,), list[Array](), list[str]()
@@ -307,4 +301,4 @@ def simulated_chain(chain: RigidChain, step: float, row: Integrator, axis: Axis 
         labels += [about] * len(unknowns)
     mass, stiffness = (block_diag(*each) for each in zip(*map(chain.matrices, axes), strict=True))
     constraints = block_diag(*map(chain.constraints, axes))
-    return Simulated(mass, block_diag(*damping), stiffness, step, row, labels, constraints)
+    return Simulated(mass, block_diag(*damping), stiffness, step, scheme, labels, constraints)
