@@ -82,6 +82,8 @@ def test_multipliers_with_unequal_dashpots(setting):
     for other in {scheme_of("mujoco", one) for one in SETTINGS} - {engine.scheme}:
         wrong = Simulated(predicted.mass, predicted.damping, predicted.stiffness, step, other)
         assert apart(engine.multipliers(), wrong.multipliers) > 1e-6
+    limit = predicted.limit
+    assert limit == np.inf or (engine.grows(1.01 * limit) and not engine.grows(0.99 * limit))
 
 
 @pytest.mark.parametrize("setting", SETTINGS)

@@ -95,14 +95,16 @@ def compensated(scheme: Scheme, zeta: float, omega: float, step: float) -> float
 def armature(chain: Simulated, beta: float = 0.25) -> Array:
     """Inertias on the hinges, (n,), kg m^2, max(0, beta h^2 k -+ h c/2), by which a step is one of Newmark's method.
 
-    beta = 1/4 is the trapezoidal rule: no linear limit, no numerical damping. For this step only, for springs and
-    dashpots of hinges only. It does not hold for large motion: undamped and about several axes it diverges at 0.01 rad
-    (MuJoCo 4.0.0). Raises InputError for another scheme than semi-implicit Euler.
+    beta = 1/4 is the trapezoidal rule: no linear limit, no numerical damping. For this step only. It does not hold for
+    large motion: undamped and about several axes it diverges at 0.01 rad (MuJoCo 4.0.0). Raises InputError for another
+    scheme than semi-implicit Euler, and for springs to the ground.
     """
     sign = {IMPLICIT_DASHPOTS.name: -0.5, EXPLICIT_DASHPOTS.name: 0.5}.get(chain.scheme.name)
     if sign is None:
         raise InputError(f"armature: it lowers the frequencies of {chain.scheme.name} and wins no step, leave it out")
     k, c = np.diag(chain.stiffness), np.diag(chain.damping)
+    if any((one != np.diag(np.diag(one))).any() for one in (chain.stiffness, chain.damping)):
+        raise InputError("armature: springs or dashpots act on several hinges, on which it does not, leave it out")
     return np.where(k > 0.0, np.maximum(beta * chain.step**2 * k + sign * chain.step * c, 0.0), 0.0)
 
 
@@ -147,7 +149,7 @@ def trade(
         hertz, file = plain.modal[0][:modes] / (2.0 * np.pi), plain.modes
         space = hertz / chain.exact_hz(n_modes=len(hertz)) - 1.0
         betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
-        heavy = not in_space and damping and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS)
+        heavy = damping and not (in_space or chain.closed) and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS)
         for beta in betas if heavy else betas[:1]:
             inertias = armature(every, beta) if beta else np.zeros(1)
             run = replace(every, mass=every.mass + np.diag(inertias)) if beta else every

@@ -91,8 +91,9 @@ class Scheme(NamedTuple):
             terms = step * np.sqrt(stiffness), step * damping
             x, d = (np.broadcast_to(one, z.shape).astype(complex)[..., None] for one in terms)
             every = self.roots(x, d[..., None])
-            turning = every.imag > REAL * abs(every)
-            best = np.where(turning, 10.0 + every.imag, abs(1.0 + every) / (1.0 + abs(1.0 + every))).argmax(axis=-1)
+            turning = every.imag > REAL * abs(every)  # before all real roots, of which the size counts
+            size = abs(1.0 + every) / (1.0 + abs(1.0 + every))
+            best = np.where(turning, 1.0 + every.imag, size).argmax(axis=-1)
         return np.asarray(np.take_along_axis(every, best[..., None], axis=-1)[..., 0])
 
 
