@@ -80,11 +80,7 @@ def compensated(scheme: Scheme, zeta: float, omega: float, step: float) -> float
     if scheme.state or len(scheme.mass) > 3:
         raise InputError(f"damping: that of {scheme.name} is not compensated, write the ratio itself")
     # |lambda|^2 of a pair is the polynomial at lambda = 0, over its highest coefficient; both are linear in 2 zeta x
-    zero = [
-        float(np.polynomial.polynomial.polyval(-1.0, one)) for one in (scheme.mass, scheme.dashpots, scheme.springs)
-    ]
-    top = [1.0, *((*one, 0.0, 0.0)[2] for one in (scheme.dashpots, scheme.springs))]
-    m, c, k = (growth * below - above for below, above in zip(zero, top, strict=True))
+    m, c, k = (growth * below - above for below, above in zip(scheme.at(-1.0), scheme.powers[-1], strict=True))
     ratio = -(m + k * x**2) / (2.0 * x * c)
     if ratio < 0.0:
         text = f"the integrator alone damps more than {100.0 * zeta:.3g} % at this step"

@@ -12,6 +12,7 @@ Hughes & Taylor, Earthq. Eng. Struct. Dyn. 5 (1977); Chung & Hulbert, J. Appl. M
 measured in the version of its row, with springs and dashpots of joints, without equalities and contacts.
 """
 
+from itertools import zip_longest
 from math import inf, sqrt
 from typing import NamedTuple
 
@@ -43,6 +44,15 @@ class Scheme(NamedTuple):
     mass: Powers = (0.0, 0.0, 1.0)
     state: tuple[Powers, ...] = ()
 
+    @property
+    def powers(self) -> list[tuple[float, float, float]]:
+        """Coefficients of mass, dashpots and springs by power of d."""
+        return list(zip_longest(self.mass, self.dashpots, self.springs, fillvalue=0.0))
+
+    def at(self, d: float) -> list[float]:
+        """Values of mass, dashpots, springs."""
+        return [sum(one * d**i for i, one in enumerate(row)) for row in zip(*self.powers, strict=True)]
+
     def roots(self, x: ComplexArray | Array, damping: ComplexArray | Array) -> ComplexArray:
         """Roots d = lambda - 1 of coupled modes, (..., p n): x = omega h (..., n), h times modal C (..., n, n).
 
@@ -50,12 +60,7 @@ class Scheme(NamedTuple):
         """
         n, p = x.shape[-1], len(self.mass) - 1
         eye, square = np.eye(n), np.eye(n) * (x**2)[..., None]
-        terms = [
-            m * eye + c * damping + k * square
-            for m, c, k in zip(
-                *(np.pad(one, (0, p + 1 - len(one))) for one in (self.mass, self.dashpots, self.springs)), strict=True
-            )
-        ]
+        terms = [m * eye + c * damping + k * square for m, c, k in self.powers]
         companion = np.zeros((*x.shape[:-1], p * n, p * n), dtype=np.result_type(x, damping))
         rows = np.arange(n)
         companion[..., rows, n + rows] = x
@@ -69,8 +74,8 @@ class Scheme(NamedTuple):
         """Roots d = lambda - 1 at z = h s, (..., p)."""
         rows = [np.polynomial.polynomial.polyval(z, row) for row in self.state]
         if len(rows) == 2:  # the difference first: near 1 lambda has lost its digits
-            powers = np.sum([np.pad(row, (0, max(map(len, self.state)) - len(row))) for row in self.state], axis=0)
-            return np.asarray(-np.polynomial.polynomial.polyval(z, powers) / rows[1])[..., None]
+            both = [sum(pair) for pair in zip_longest(*self.state, fillvalue=0.0)]
+            return np.asarray(-np.polynomial.polynomial.polyval(z, both) / rows[1])[..., None]
         companion = np.zeros((*z.shape, len(rows) - 1, len(rows) - 1), dtype=complex)
         companion[..., range(len(rows) - 2), range(1, len(rows) - 1)] = 1.0
         companion[..., -1, :] = np.stack([-row / rows[-1] for row in rows[:-1]], axis=-1)

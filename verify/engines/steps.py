@@ -188,8 +188,7 @@ class Simulated:
             step, pole = _reach(self.scheme, self.poles.s)
             return step, shapes[:, int(self.poles.mode[pole])]
         # a scheme of three instants leaves the circle at lambda = -1: the largest 1/h of a hyperbolic problem
-        terms = self.scheme.mass, self.scheme.dashpots, self.scheme.springs
-        m, c, k = (float(np.polynomial.polynomial.polyval(-2.0, one)) for one in terms)
+        m, c, k = self.scheme.at(-2.0)
         shape, value = np.eye(len(omega))[-1], 0.0
         for _ in range(50):  # the root of a shape's quotient rises to the largest, quadratically
             half = 0.5 * c * float(shape @ damping @ shape) / m
@@ -241,15 +240,15 @@ class Simulated:
             error = _ratio(s) - _ratio(pole) if damping else _hertz(s) / _hertz(pole) - 1.0
             return np.asarray(abs(error) <= within)
 
-        steps = np.geomspace(1e-6, 4.0, 400) / abs(pole[0])
-        if not (bad := ~good(steps)).any():
-            return inf
-        last = int(bad.argmax())
-        low, high = (steps[last - 1] if last else 0.0), steps[last]
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if good(np.array([middle]))[0] else (low, middle)
-        return float(low)
+        low, steps = 0.0, np.geomspace(1e-6, 4.0, 400) / abs(pole[0])
+        for _ in range(5):  # to the first bad step, then 400 times closer each
+            bad = ~good(steps)
+            if not bad.any():
+                return inf
+            last = int(bad.argmax())
+            low = float(steps[last - 1]) if last else low
+            steps = np.linspace(low, steps[last], 401)[1:]
+        return low
 
 
 def _pole(increments: ComplexArray, step: Array | float) -> ComplexArray:
