@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
+from verify.blas import one_blas_thread
 from verify.engines.description import describe
 from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme
 from verify.engines.steps import Simulated, simulated_chain
@@ -122,6 +123,7 @@ class Candidate(NamedTuple):
     numerical: Array
 
 
+@one_blas_thread()
 def trade(
     beam: Beam,
     links: Sequence[int],

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array, BoolArray, ComplexArray, Indices
+from verify.blas import one_blas_thread
 from verify.engines.description import Axis, RigidChain
 from verify.engines.integrators import REAL, Scheme
 from verify.errors import InputError
@@ -71,6 +72,7 @@ class Simulated:
         check_number("step", self.step, "s", above=0)
 
     @cached_property
+    @one_blas_thread()
     def modal(self) -> tuple[Array, Array, Array]:
         """(omega (n,), 1/s, C (n, n), shapes (unknowns, n)) of the undamped modes with unit modal mass."""
         from scipy.linalg import eigh, null_space
@@ -108,6 +110,7 @@ class Simulated:
         return np.flatnonzero(sizes[inverse] == 1), groups
 
     @cached_property
+    @one_blas_thread()
     def poles(self) -> Poles:
         """Poles of the file, exact for every C."""
         from scipy.optimize import linear_sum_assignment
@@ -140,6 +143,7 @@ class Simulated:
         return Poles(s.astype(complex), mode, k.astype(complex), c.astype(complex), first)
 
     @cached_property
+    @one_blas_thread()
     def _stepped(self) -> tuple[ComplexArray, ComplexArray]:
         """(of the modes, (n,), of all states) lambda - 1."""
         from scipy.optimize import linear_sum_assignment
@@ -177,6 +181,7 @@ class Simulated:
         return float(self.modal[0][-1])
 
     @cached_property
+    @one_blas_thread()
     def _limit(self) -> tuple[float, Array]:
         """(largest stable step, s, shape over the unknowns of the motion that grows first)."""
         from scipy.linalg import eigh
@@ -216,7 +221,7 @@ class Simulated:
 
     @property
     def limiting(self) -> dict[str, float]:
-        """Share of the elastic energy of the motion that grows first by label in `axes`, largest first."""
+        """Shares of elastic energy by label in `axes`, largest first, of the motion that grows first or has `omega_max`."""
         shape = self._limit[1]
         energy = shape * (self.stiffness @ shape) / (shape @ self.stiffness @ shape)
         labels = np.array(self.axes if len(self.axes) else [str(i) for i in range(len(energy))])
