@@ -221,7 +221,7 @@ class Simulated:
 
     @property
     def limiting(self) -> dict[str, float]:
-        """Shares of elastic energy by label in `axes`, largest first, of the motion that grows first or has `omega_max`."""
+        """Shares of elastic energy by label in `axes`, largest first: of what grows first, else of the highest mode."""
         shape = self._limit[1]
         energy = shape * (self.stiffness @ shape) / (shape @ self.stiffness @ shape)
         labels = np.array(self.axes if len(self.axes) else [str(i) for i in range(len(energy))])
