@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 import numpy as np
@@ -28,6 +28,9 @@ from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT, WALLS, Theory
 from verify.validation import check_choice, check_integer, check_number, check_type
+
+if TYPE_CHECKING:
+    from verify.engines.steps import Simulated
 
 Axis = Literal["bending", "width", "torsion"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
@@ -176,6 +179,16 @@ class RigidChain:
         """Relative errors of the first frequencies against the exact beam, (n_modes,)."""
         hertz = self.frequencies_hz(axis, n_modes)
         return np.asarray(hertz / self.exact_hz(axis, len(hertz)) - 1.0)
+
+    def simulated(self, step: float, engine: str, setting: str = "", axis: Axis | None = None) -> "Simulated":
+        """Damped modes, multipliers and stability limit in an engine's steps, s, by a setting of `integrators`.
+
+        About all axes or one. Raises InputError for an unknown engine or setting.
+        """
+        from verify.engines.integrators import scheme_of
+        from verify.engines.steps import simulated_chain
+
+        return simulated_chain(self, step, scheme_of(engine, setting), axis)
 
 
 @lru_cache(maxsize=16)
