@@ -16,6 +16,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Contact, Foot                                                unilateral contact of sliders, feet of several points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
+  NonlinearHermite, BentElements, large_motion, NonlinearMotion    nonlinear elements: statics, rotation, time
   load_scene, run_scene                                        a scene file, its gates and studies
   InputError                                                   invalid input, in one sentence
 
