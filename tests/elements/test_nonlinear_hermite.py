@@ -25,7 +25,7 @@ from verify.chain import motion
 from verify.chain.kinematics import at_rest
 from verify.chain.system import build_system
 from verify.elements.nonlinear import Forces
-from verify.elements.nonlinear_motion import Base
+from verify.problem.base_motion import Base, polynomial, tabulated
 
 CANTILEVER = Beam(length=1.3, bending_stiffness=0.7, mass_per_length=2.1, supports=("clamped", "free"))
 L, EI, RHO_A = CANTILEVER.length, CANTILEVER.bending_stiffness, CANTILEVER.mass_per_length
@@ -136,6 +136,33 @@ def test_a_beam_that_is_spun_up_lags_as_published_and_ends_with_its_steady_exten
     assert lags[1] + (lags[1] - lags[0]) / 3.0 == pytest.approx(-0.573786, abs=2e-5)
     steady = model.bend(rate=6.0)
     assert steady.tip == pytest.approx([10.0 + 5.1431745504e-4, 0.0], abs=1e-6)  # rounding in EA
+
+
+def test_links_lag_as_published_on_a_hub_that_is_spun_up_and_keep_their_energy_balance():
+    times, lags = np.linspace(0.0, 7.5, 301), []
+    for count in (10, 20, 40):
+        chain = replace(build_system(SPUN, count), base=Base(rotation=spin_up))
+        run = motion.simulate(chain, at_rest(chain), times, tolerance=1e-7)
+        spline = CubicSpline(times[240:], run.in_base()[240:, -1, 1])
+        lags.append(min(spline(spline.derivative().roots(extrapolate=False))))
+        assert abs(run.residual()).max() < 1e-8 * run.energies().sum(axis=0).max()
+    assert observed_order([10, 20, 40], [lag + 0.573750 for lag in lags]) == pytest.approx(1.93, abs=0.1)
+    assert lags[2] + (lags[2] - lags[1]) / 3.0 == pytest.approx(-0.573750, abs=2e-6)
+
+
+def test_links_and_elements_move_alike_on_a_base_that_turns_and_shakes():
+    beam = Beam(length=0.8, bending_stiffness=0.9, mass_per_length=1.7, supports=("clamped", "free"))
+    shake = tabulated(np.linspace(0.0, 1.0, 21), 0.07 * np.sin(np.linspace(0.0, 1.0, 21) * 5.0) ** 2)
+    base = Base(rotation=polynomial(0.4, 0.0, 1.3, -0.8), x=polynomial(0.0, 0.1, 0.6), y=shake, hub_radius=0.3)
+    times, tips = [0.0, 0.3, 0.7], []
+    for count in (20, 40):
+        chain = replace(build_system(beam, count), base=base, gravity=(1.1, -4.0))
+        tips.append(motion.simulate(chain, at_rest(chain), times, tolerance=1e-9).in_base()[:, -1])
+    model, forces = NonlinearHermite(beam, 12, axial_stiffness=1e5), Forces(gravity=np.array([1.1, -4.0]))
+    start_rate = np.zeros_like(model.straight)  # both start at rest on the moving base
+    run = large_motion(model, times, forces=forces, base=base, start_rate=start_rate, tolerance=1e-8)
+    assert run.tip == pytest.approx(tips[1] + (tips[1] - tips[0]) / 3.0, abs=1e-4)
+    assert abs(run.tip[:, 1]).max() > 0.1
 
 
 def test_a_pendulum_swings_as_the_chain_of_links_does():

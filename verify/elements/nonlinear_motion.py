@@ -9,7 +9,6 @@ The base moves as prescribed; in its frame that is inertia: Coriolis, centrifuga
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import TypeAlias
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -17,6 +16,7 @@ from scipy.linalg import LinAlgError
 from verify.arrays import Array, ComplexArray
 from verify.elements.nonlinear import NONE, QUARTER, Forces, NonlinearHermite
 from verify.errors import InputError, shown
+from verify.problem.base_motion import FIXED, Base
 from verify.problem.beam import PointForce
 from verify.validation import check_number
 
@@ -30,30 +30,6 @@ SOLVED = 1e-3  # Newton step over the tolerance that ends an iteration
 GROWTH, SHRINK, SAFETY = 1.5, 0.5, 0.8
 """A step changes by at most these factors, since the acceleration is that of a time that depends on it."""
 LEAST = 1e-9  # step over the duration at which the run gives up
-Prescribed: TypeAlias = Callable[[float], tuple[float, float, float]]
-"""Value, first and second derivative at a time."""
-
-
-def still(time: float) -> tuple[float, float, float]:
-    """No motion."""
-    return 0.0, 0.0, 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Base:
-    """Prescribed motion of the base; the beam starts at `hub_radius` from the axis of its rotation, m."""
-
-    rotation: Prescribed = still
-    """Angle, rad, rate, acceleration."""
-    x: Prescribed = still
-    """Coordinate of the axis along the beam at angle 0, m."""
-    y: Prescribed = still
-    """Coordinate of the axis across it, m."""
-    hub_radius: float = 0.0
-
-
-FIXED = Base()
-"""A base that does not move."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
