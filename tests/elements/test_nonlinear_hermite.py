@@ -24,7 +24,7 @@ from verify.analysis.comparison import observed_order
 from verify.chain import motion
 from verify.chain.kinematics import at_rest
 from verify.chain.system import build_system
-from verify.elements.nonlinear import Forces
+from verify.elements.plane_elements import Forces
 from verify.problem.base_motion import Base, polynomial, tabulated
 
 CANTILEVER = Beam(length=1.3, bending_stiffness=0.7, mass_per_length=2.1, supports=("clamped", "free"))

@@ -14,7 +14,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from verify.arrays import Array, ComplexArray
-from verify.elements.nonlinear import NONE, QUARTER, Forces, NonlinearHermite
+from verify.elements.nonlinear import NonlinearHermite
+from verify.elements.plane_elements import NONE, QUARTER, Forces
 from verify.errors import InputError, shown
 from verify.problem.base_motion import FIXED, Base
 from verify.problem.beam import PointForce
@@ -126,29 +127,23 @@ class _Run:
         self.hub = np.zeros_like(model.straight)
         self.hub[:, 0, 0] = base.hub_radius
 
-    def forces_on(self, time: float, state: Array, rate: Array) -> tuple[Array, Array, Array, tuple[float, float]]:
-        """External less elastic forces (n_all,), minus their derivatives by state and rate (n, 8, 8), and two energies.
-
-        These are the strain energy, J, and the power, W, of the external forces: loads, and inertia by the base.
-        """
+    def external(self, time: float, state: Array, rate: Array) -> tuple[Array, Array, Array]:
+        """Loads and inertia forces of the base (n_all,), minus their derivatives by state and rate, (n, 8, 8)."""
         (angle, spin, turn), model = self.base.rotation(time), self.model
         frame = np.array([[cos(angle), sin(angle)], [-sin(angle), cos(angle)]])
         translation = frame @ [self.base.x(time)[2], self.base.y(time)[2]]
         ground = self.forces(time)
         forces = ground._replace(tip=frame @ ground.tip, gravity=frame @ ground.gravity - translation)
-        energy, gradient, hessian = model.strain_energy(state)
         loads, by_state = model.loads(forces, state)
         centrifugal, gyroscopic = turn * self.turned - spin**2 * self.mass, 2.0 * spin * self.turned
         inertia = centrifugal @ model.of_elements(state + self.hub)[..., None]
         inertia += gyroscopic @ model.of_elements(rate)[..., None]
         driven = (self.drive * np.exp(1j * self.omega * time)).real.ravel()
-        external = model.vector(loads - inertia[..., 0]) + driven
-        power = float(external @ rate.ravel())
-        return external - model.vector(gradient), hessian - by_state + centrifugal, gyroscopic, (energy, power)
+        return model.vector(loads - inertia[..., 0]) + driven, centrifugal - by_state, gyroscopic
 
     def begin(self, state: Array, rate: Array) -> _Instant:
         """The first instant, in balance."""
-        forces = self.forces_on(0.0, state, rate)[0]
+        forces = self.external(0.0, state, rate)[0] - self.model.vector(self.model.elastic(state)[0])
         return _Instant(0.0, state, rate, self.model.solve(self.model.band(self.mass), forces))
 
     def step(self, now: _Instant, h: float, jerk: Array) -> tuple[_Instant, float] | None:
@@ -163,12 +158,12 @@ class _Run:
         time, mix = now.time + (1.0 - ALPHA_F) * h, 1.0 - ALPHA_F
         for _ in range(8):
             state, rate = start + h * h * BETA * a, start_rate + h * GAMMA * a
-            forces, stiffness, damping, _ = self.forces_on(
-                time, mix * state + ALPHA_F * now.state, mix * rate + ALPHA_F * now.rate
-            )
+            middle = mix * state + ALPHA_F * now.state
+            forces, stiffness, damping = self.external(time, middle, mix * rate + ALPHA_F * now.rate)
+            gradient, hessian = model.elastic(middle)
             mean = model.of_elements((1.0 - ALPHA_M) * a + ALPHA_M * now.acceleration)
-            right = forces - model.vector((self.mass @ mean[..., None])[..., 0])
-            matrix = (1.0 - ALPHA_M) * self.mass + mix * (h * h * BETA * stiffness + h * GAMMA * damping)
+            right = forces - model.vector(gradient + (self.mass @ mean[..., None])[..., 0])
+            matrix = (1.0 - ALPHA_M) * self.mass + mix * (h * h * BETA * (hessian + stiffness) + h * GAMMA * damping)
             try:
                 change = model.solve(model.band(matrix), right)
             except LinAlgError:
@@ -183,12 +178,6 @@ class _Run:
                 error = ERROR * h * h * abs(resolved[:, 0]).max() / (model.beam.length * self.tolerance)
                 return _Instant(now.time + h, start + h * h * BETA * a, start_rate + h * GAMMA * a, a), float(error)
         return None
-
-    def energies(self, now: _Instant) -> tuple[float, float, float]:
-        """(kinetic energy, strain energy, J, power of loads and base, W)."""
-        v = self.model.of_elements(now.rate)
-        kinetic = 0.5 * float((v * (self.mass @ v[..., None])[..., 0]).sum())
-        return kinetic, *self.forces_on(now.time, now.state, now.rate)[3]
 
     def march(
         self, times: Array, start: Array | None, start_rate: Array | None, progress: Callable[[float], None]
@@ -229,14 +218,16 @@ class _Run:
         states, rates, accelerations = (
             np.array([getattr(instant, name) for instant in instants]) for name in ("state", "rate", "acceleration")
         )
-        kinetic, strain, power = np.array([self.energies(instant) for instant in instants]).T
+        moving = rates.reshape(len(at), -1)[:, self.model.values]
+        kinetic = 0.5 * np.einsum("tni,nij,tnj->t", moving, self.mass, moving)
+        power = np.array([self.external(now.time, now.state, now.rate)[0] @ now.rate.ravel() for now in instants])
         work = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(at) * (power[1:] + power[:-1]))])
         return NonlinearMotion(
             model=self.model,
             times=times,
             states=CubicHermiteSpline(at, states, rates)(times),
             rates=CubicHermiteSpline(at, rates, accelerations)(times),
-            energies=np.array([np.interp(times, at, value) for value in (kinetic, strain, work)]),
+            energies=np.array([np.interp(times, at, value) for value in (kinetic, self.model.energy(states), work)]),
             steps=len(instants) - 1,
             rejected=rejected,
         )
