@@ -1,7 +1,7 @@
 """Princeton beam across its thin side: tip deflection, m, under a force of 8.896 N.
 
-The printed value is that of ANSYS beams, which shear; the reports measured 143.8 to 146 mm. Solid elements give 143.849
-mm, 1.7 % less: model form, which no beam has. Order 2 of links, 4 of elements.
+The printed value is that of ANSYS beams. Solid elements give 143.849 mm, 1.7 % less: model form, which no beam model
+has. Order 2 of links, 4 of elements.
 """
 
 from verify.cases.base import case
