@@ -21,6 +21,7 @@ from verify import (
     simulate,
 )
 from verify.analysis.comparison import observed_order
+from verify.cases.table import CASES
 from verify.chain import motion
 from verify.chain.kinematics import at_rest
 from verify.chain.system import build_system
@@ -115,6 +116,19 @@ def test_a_rotating_cantilever_flaps_and_lags_as_by_the_series_with_order_four(s
     assert abs(figures[-1]).max() < 1e-6
     if speed == 3.0:  # at 12 the error of mode 3 changes its sign
         assert observed_order([12, 24, 48], [error[2] for error in figures]) == pytest.approx(4.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("speed", "mode"), [(3.0, 1), (3.0, 3), (12.0, 1), (12.0, 3)])
+def test_joints_that_the_tension_softens_make_a_rotating_chain_converge_with_order_four(speed, mode):
+    names = {(3.0, 1): 3.743511896211, (12.0, 1): 5.42704927779}
+    exact = names.get((speed, mode)) or sqrt({3.0: 62.98496748068, 12.0: 79.61447848946}[speed] ** 2 - speed**2)
+    plain, soft = (
+        [CASES["rotating-cantilever-1"].run(mode, speed, joints, n) / exact - 1.0 for n in (80, 160)]
+        for joints in ("series", "tensioned")
+    )
+    assert plain[0] / plain[1] == pytest.approx(4.0, rel=0.1)
+    assert soft[0] / soft[1] == pytest.approx(16.0, rel=0.12)
+    assert abs(soft[0]) < plain[0] / 10.0
 
 
 def spin_up(t, speed=6.0, end=15.0):

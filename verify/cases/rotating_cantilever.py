@@ -10,8 +10,9 @@ from math import pi
 from verify.cases.base import case
 from verify.cases.beams import CANTILEVER, OMEGA, inextensible
 from verify.chain.kinematics import at_rest
-from verify.chain.linearisation import linearise
+from verify.chain.linearisation import linearise, tensioned
 from verify.chain.system import build_system
+from verify.settings import Joints
 from verify.validation import check_integer
 
 SERIES = "A. D. Wright et al., J. Appl. Mech. 49 (1982) 197: power series, summed in 60 digits"
@@ -19,10 +20,13 @@ SERIES = "A. D. Wright et al., J. Appl. Mech. 49 (1982) 197: power series, summe
 
 @case("rotating-cantilever-1", 5.42704927779, 5e-12, SERIES, mode=1, speed=12.0)
 @case("rotating-cantilever-3", 78.70492478, 5e-9, SERIES, mode=3, speed=12.0)
-def frequency(mode: int, speed: float, count: int = 80) -> float:
+@case("rotating-cantilever-tensioned-1", 5.42704927779, 5e-12, SERIES, mode=1, speed=12.0, joints="tensioned")
+@case("rotating-cantilever-tensioned-3", 78.70492478, 5e-9, SERIES, mode=3, speed=12.0, joints="tensioned")
+def frequency(mode: int, speed: float, joints: Joints = "series", count: int = 80) -> float:
     """Frequency of rigid links, linearised. Raises InputError for more modes than links."""
     check_integer("count", count, mode)
     system = replace(build_system(CANTILEVER, count), hub_rate=speed * OMEGA)
+    system = tensioned(system) if joints == "tensioned" else system
     return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / OMEGA
 
 
