@@ -3,12 +3,14 @@
     python -m benchmarks.large_motion
 
 Static cases: error of the figure. Motions: largest distance of the tip's path from the model's own converged one, over
-the length of the path's bounding box (spin-up: the largest lag); numbers and tolerances are tried in turn, and the row
-is the fastest that keeps the error. Links: explicit Dormand-Prince steps; elements: generalised-alpha, implicit.
+the largest lag of the spin-up or the pendulum's length; numbers and tolerances are tried in turn, and the row is the
+fastest that keeps the error. Links: explicit Dormand-Prince steps; elements: generalised-alpha, implicit. Where Exudyn
+is installed, its ANCF cables, with steps, s, in place of tolerances.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from importlib.util import find_spec
 from itertools import product
 from time import process_time
 from typing import Any
@@ -56,6 +58,33 @@ def swung_elements(n: int, tolerance: float) -> Array:
     return large_motion(model, SWUNG, forces=Forces(gravity=WEIGHT), tolerance=tolerance).tip
 
 
+def swung_cables(n: int, step: float) -> Array:
+    """(101, 2), m: Exudyn's ANCF cable elements with reduced integration of EA, generalised-alpha, radius 0.9."""
+    import exudyn
+    from exudyn.beams import GenerateStraightLineANCFCable
+    from exudyn.itemInterface import Cable2D, SensorNode
+
+    system = exudyn.SystemContainer().AddSystem()
+    stiffness = {"physicsBendingStiffness": 0.01, "physicsAxialStiffness": pendulum.EA, "useReducedOrderIntegration": 1}
+    cable = Cable2D(physicsMassPerLength=1.0, **stiffness)
+    held = {"massProportionalLoad": [0, -1.0, 0], "fixedConstraintsNode0": [1, 1, 0, 0]}
+    nodes = GenerateStraightLineANCFCable(system, [0, 0, 0], [1, 0, 0], n, cable, **held)[0]
+    position = exudyn.OutputVariableType.Position
+    sensor = system.AddSensor(SensorNode(nodeNumber=nodes[-1], storeInternal=True, outputVariableType=position))
+    system.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = round(SWUNG[-1] / step)
+    settings.timeIntegration.endTime = float(SWUNG[-1])
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.01
+    settings.show.computationTime = False
+    system.SolveDynamic(settings)
+    rows = np.array(system.GetSensorStoredData(sensor))
+    return np.stack([np.interp(SWUNG, rows[:, 0], rows[:, 1 + axis]) for axis in (0, 1)], axis=1)
+
+
 def runs(run: Callable[[int, float], Array], sizes: list[int], tolerances: list[float]) -> Iterator[tuple[str, Try]]:
     """All tries of a motion: what, and its path."""
     for n, tolerance in product(sizes, tolerances):
@@ -90,16 +119,20 @@ def main() -> None:
         static(case, [n for n in links if n > 4])
     for case in ("elastica-elements", "rotating-cantilever-elements-1", "rotating-cantilever-elements-3"):
         static(case, [n for n in elements if n > 3])
-    paths = (
+    paths: tuple[Any, ...] = (
         ("spin-up, links", spun_links, [4, 6, 8, 12, 16, 24, 32, 48], [1e-3, 1e-4, 1e-5, 1e-6], (32, 64, 1e-8)),
         ("spin-up, elements", spun_elements, [4, 6, 8, 12], [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 3e-9], (12, 16, 1e-9)),
         ("pendulum, links", swung_links, [6, 8, 12, 16, 24, 32, 48, 64, 96], [1e-3, 1e-4, 1e-5, 1e-6], (48, 96, 1e-9)),
         ("pendulum, elements", swung_elements, [4, 6, 8, 12, 16], [1e-4, 1e-5, 1e-6, 1e-7, 1e-8], (16, 24, 1e-9)),
     )
-    for name, run, sizes, tolerances, (coarse, fine, sharp) in paths:
-        first, last = run(coarse, sharp), run(fine, sharp)
-        order = 2 if run in (spun_links, swung_links) else 4
-        true = last + (last - first) / ((fine / coarse) ** order - 1.0)
+    if find_spec("exudyn"):
+        paths += (("pendulum, ANCF cables", swung_cables, [4, 6, 8, 12, 16, 24, 32], [2e-2, 1e-2, 5e-3], None),)
+    for name, run, sizes, tolerances, limit in paths:
+        if limit:  # ANCF cables have the limit of the elements
+            coarse, fine, sharp = limit
+            first, last = run(coarse, sharp), run(fine, sharp)
+            order = 2 if run in (spun_links, swung_links) else 4
+            true = last + (last - first) / ((fine / coarse) ** order - 1.0)
         size = abs(true[:, 1]).max() if "spin" in name else 1.0
         tries = list(runs(run, sizes, tolerances))
         row(name, tries, lambda path, true=true, size=size: float(abs(path - true).max() / size))
