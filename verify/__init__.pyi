@@ -26,6 +26,10 @@ from verify.dynamics.free_vibration import FreeVibration as FreeVibration
 from verify.dynamics.free_vibration import free_vibration as free_vibration
 from verify.dynamics.result import Motion as Motion
 from verify.dynamics.simulate import simulate as simulate
+from verify.elements.nonlinear import BentElements as BentElements
+from verify.elements.nonlinear import NonlinearHermite as NonlinearHermite
+from verify.elements.nonlinear_motion import NonlinearMotion as NonlinearMotion
+from verify.elements.nonlinear_motion import large_motion as large_motion
 from verify.engines.judgement import judge_file as judge_file
 from verify.errors import InputError as InputError
 from verify.fem_beam import HermiteModel as HermiteModel

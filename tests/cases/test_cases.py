@@ -9,7 +9,13 @@ from verify.cases.table import CASES
 
 @pytest.mark.parametrize(
     ("name", "first", "order"),
-    [("elastica-shortening", 80, 2.0), ("hanging-chain", 23, 2.0), ("restitution", 500, 1.0)],
+    [
+        ("elastica-shortening", 80, 2.0),
+        ("hanging-chain", 23, 2.0),
+        ("restitution", 500, 1.0),
+        ("pendulum", 20, 2.0),
+        ("heavy-column", 4, 4.0),
+    ],
 )
 def test_error_falls_with_the_order_of_the_model(name, first, order):
     counts = [first, 2 * first, 4 * first]

@@ -2,6 +2,7 @@
 
 from math import sqrt
 
+from verify.elements.nonlinear import NonlinearHermite
 from verify.problem.beam import Beam
 
 CANTILEVER = Beam(
@@ -11,3 +12,8 @@ EI, OMEGA = CANTILEVER.bending_stiffness, sqrt(CANTILEVER.bending_stiffness / CA
 """EI of `CANTILEVER`, N m^2, and sqrt(EI / (rho A L^4)), rad/s."""
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ = 4276.0  # of the wave on `STRIP`: a wavelength of 46 mm, 46 thicknesses
+
+
+def inextensible(count: int, beam: Beam = CANTILEVER) -> NonlinearHermite:
+    """Nonlinear elements with EA L^2 / EI = 1e8: strains below 1e-7, and rounding of EA's strain below 1e-8 of EI."""
+    return NonlinearHermite(beam, count, axial_stiffness=1e8 * beam.bending_stiffness / beam.length**2)

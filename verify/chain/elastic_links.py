@@ -38,7 +38,7 @@ def twist(force: Array, i: int, now: float, c: float, s: float, moment: float) -
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath={"contract"})
 def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     """Accelerations of joints 0..N into out[2 N + 2:], zero at bilateral supports (see `runge_kutta`)."""
-    links, loads, gravity, _ = model
+    links, loads, gravity, _, _ = model
     n, size = links.shape[0] - 1, 2 * links.shape[0]
     u, v, force = y[:size], y[size:], out[size:]
     for j in range(size):
@@ -95,4 +95,4 @@ def flatten(system: ChainSystem) -> Model:
             reciprocal = 0.0 if fixed and j == n else 1.0 / (diagonal[j] - factor * coupling[j - 1])
             links[j, FACTOR + 2 * axis : FACTOR + 2 * axis + 2] = factor, reciprocal
     sheet, gravity = np.array(loads, dtype=float).reshape(len(loads), 7), np.array(system.gravity, float)
-    return Model(links, sheet, gravity, np.zeros((1, 1)))
+    return Model(links, sheet, gravity, np.zeros((1, 1)), np.zeros((1, 1)))

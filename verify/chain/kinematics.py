@@ -20,8 +20,8 @@ class Positions(NamedTuple):
 
 def place(system: ChainSystem, times: float | Array, angles: Array, rates: Array) -> Positions:
     """Kinematics of the links from relative angles and rates, (..., N), at times (...)."""
-    directions = np.cumsum(angles, axis=-1) + system.hub_rate * np.asarray(times, dtype=float)[..., None]
-    spins = np.cumsum(rates, axis=-1) + system.hub_rate
+    angle, rate = system.hub(times)
+    directions, spins = np.cumsum(angles, axis=-1) + angle[..., None], np.cumsum(rates, axis=-1) + rate[..., None]
     c, s = np.cos(directions), np.sin(directions)
     joints = np.zeros((*directions.shape[:-1], system.n_links + 1, 2))
     velocities = np.zeros_like(joints)

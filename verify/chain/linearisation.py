@@ -1,6 +1,6 @@
 """Small motion of the nonlinear chain about an equilibrium: matrices, natural frequencies, stability."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,8 @@ from verify.arrays import Array
 from verify.chain.statics import inertia_products, potential
 from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
+from verify.segments.walls import tension_excess, wall_factors
+from verify.settings import DEFAULT, Wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,3 +82,26 @@ def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
         stiffness=sums.T @ stiffness @ sums + np.diag(np.asarray(system.stiffness, dtype=float)),
         constraint=at.closure @ sums,
     )
+
+
+def tensioned(system: ChainSystem, wall: Wall = DEFAULT.wall) -> ChainSystem:
+    """The chain with joints that are softer by T l/12, T the axial force of steady rotation and gravity along it.
+
+    A link of length l turns as a whole where the beam under tension T bends, which changes frequencies by (k l)^2/12 of
+    T's part. Joints EI/l - T l/12 take it off, with the weights of `wall` beside a clamp as under the constant T of a
+    linear chain (`segments.walls`): order 4 where T varies, too. For vibrations alone, since buckling loads err to the
+    other side. Raises InputError where no axial force acts or a joint keeps no stiffness.
+    """
+    middles = 0.5 * (system.nodes[1:] + system.nodes[:-1])
+    pull = system.masses * (middles * system.hub_rate**2 + system.gravity[0])
+    if not pull.any():
+        raise InputError("chain.hub_rate = 0.0 and no gravity along the chain: no axial force softens a joint")
+    tension = np.cumsum(pull[::-1])[::-1]
+    lengths = np.append(system.lengths[:1], 0.5 * (system.lengths[1:] + system.lengths[:-1]))
+    factors = wall_factors(("clamped", "free"), system.n_links, wall)[:-1]
+    weights = 1.0 / factors
+    weights[0] += tension_excess(wall) / factors[0] ** 2
+    stiffness = system.stiffness - np.where(system.stiffness > 0.0, tension * lengths / 12.0 * weights, 0.0)
+    if (stiffness[system.stiffness > 0.0] <= 0.0).any():
+        raise InputError(f"count = {system.n_links}: the axial force leaves no stiffness in a joint, give more links")
+    return replace(system, stiffness=stiffness)

@@ -18,6 +18,7 @@ from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
+from verify.problem.base_motion import FIXED
 from verify.segments.chain import Motions, link_mass, plain_factors
 from verify.segments.reading import contact_line
 from verify.settings import ChainReading
@@ -80,13 +81,13 @@ class RigidMotion(ChainMotion):
     @property
     def angles(self) -> Array:
         """Relative angles, (n, N), rad."""
-        return np.diff(self.directions(), prepend=self.system.hub_rate * self.times[:, None])
+        return np.diff(self.directions(), prepend=self.system.hub(self.times)[0][:, None])
 
     @property
     def rates(self) -> Array:
         """Rates of the relative angles, (n, N), rad/s."""
         n = self.system.n_links
-        return np.diff(self.states[:, n : 2 * n], prepend=self.system.hub_rate)
+        return np.diff(self.states[:, n : 2 * n], prepend=self.system.hub(self.times)[1][:, None])
 
     def state(self, index: int) -> ChainState:
         """The state at one of the times."""
@@ -108,6 +109,13 @@ class RigidMotion(ChainMotion):
     def joints(self) -> Array:
         """Positions of joints 0..N, (n, N + 1, 2), m."""
         return place(self.system, self.times, self.angles, self.rates).joints
+
+    def in_base(self) -> Array:
+        """Positions of joints 0..N in the frame of the hub, (n, N + 1, 2), m."""
+        angle = self.system.hub(self.times)[0]
+        c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        x, y = np.moveaxis(self.joints(), -1, 0)
+        return np.stack([c * x + s * y, c * y - s * x], axis=-1)
 
 
 class ElasticMotion(ChainMotion):
@@ -195,6 +203,8 @@ def simulate(
     InputError.
     """
     began = perf_counter()
+    if system.base is not FIXED and (system.tip == "roller" or system.hub_rate):
+        raise InputError("chain.base: a moving base carries a chain with a free tip and no hub_rate, give such a chain")
     samples, state = np.atleast_1d(np.asarray(times, dtype=float)), project(system, start)
     if step is not None and not 0.0 < step <= (limit := step_limit(system)):
         raise InputError(f"step = {step!r} s: give one above 0 and up to the stability limit, {limit:.4g} s, or none")
@@ -205,7 +215,7 @@ def simulate(
     first = step or min(0.1 / max(fastest, 1e-12), max(float(samples[-1]) - start.time, 1e-12))
     floor = 1e-3 * tolerance**1.5
     control = (tolerance, floor, floor * max(fastest, 1.0), np.pi if step else np.inf)
-    model = rigid_links.flatten(system)
+    model = rigid_links.flatten(system, float(samples[-1]))
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
     run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
@@ -222,6 +232,8 @@ def simulate_elastic(
     times. Hub, axial spring and `axial_inertia` are not modelled. Raises InputError.
     """
     began = perf_counter()
+    if system.base is not FIXED:
+        raise InputError("chain.base: links that stretch have a base at rest, give rigid links")
     samples = np.asarray(times, dtype=float)
     limit = elastic_step_limit(system)
     step = 0.5 * limit if step is None else step

@@ -16,14 +16,15 @@ from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION, Model
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
+from verify.problem.base_motion import FIXED, KNOTS
 
 HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(9)
 """Columns of `links`, (N, 9): half length, mass for x and y, inertia J + h^2 m_y about an end, (m_x - m_y)/4, joint,
 weight."""
 ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
 """Columns of `loads`, (n_loads, 7): link 0..N-1, arm from its middle, load, which is times cos(omega t + phase)."""
-RATE, ROLLER, TIP_SPRING, PIVOT, LENGTH = range(5)
-"""Entries of `numbers`: angular velocity of the hub, roller, its axial spring, dependent joint, length."""
+PIECE, ROLLER, TIP_SPRING, PIVOT, LENGTH, HUB_RADIUS = range(6)
+"""Entries of `numbers`: duration of a piece of `base`, roller, its axial spring, dependent joint, length, radius."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(11)
 """Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
 TINY = 1e-250
@@ -116,15 +117,30 @@ def from_base(links: Array, roller: bool, drift: float, w: Array, out: Array) ->
             out[i] -= force * w[i, UNIT]
 
 
+@inline(fastmath={"contract"})
+def move_hub(t: float, numbers: Array, base: Array) -> tuple[float, float, float, float]:
+    """Angle and rate of the hub at time t, and the acceleration of the joint on it along x and y."""
+    piece = min(int(t / numbers[PIECE]), base.shape[0] - 1)
+    s, p = t - piece * numbers[PIECE] if piece else t, base[piece]
+    angle = p[0] + s * (p[1] + s * (p[2] + s * (p[3] + s * (p[4] + s * p[5]))))
+    rate = p[1] + s * (2.0 * p[2] + s * (3.0 * p[3] + s * (4.0 * p[4] + s * 5.0 * p[5])))
+    turn = 2.0 * p[2] + s * (6.0 * p[3] + s * (12.0 * p[4] + s * 20.0 * p[5]))
+    ax, ay = p[6] + s * (p[7] + s * (p[8] + s * p[9])), p[10] + s * (p[11] + s * (p[12] + s * p[13]))
+    if numbers[HUB_RADIUS] != 0.0:
+        c, sine = numbers[HUB_RADIUS] * np.cos(angle), numbers[HUB_RADIUS] * np.sin(angle)
+        ax, ay = ax - turn * sine - rate * rate * c, ay + turn * c - rate * rate * sine
+    return angle, rate, ax, ay
+
+
 @jit(signature_or_function=ACCELERATION, no_cfunc_wrapper=False, fastmath=FAST)
 def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     """Write derivatives of rates, dissipation and work to out[N:], after the closure of a tip on a roller."""
-    links, loads, numbers, w = model
+    links, loads, numbers, w, base = model
     n = links.shape[0]
     theta, omega, roller, pivot = y[:n], y[n : 2 * n], numbers[ROLLER] > 0.0, int(numbers[PIVOT])
     turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
-    angle, rate = numbers[RATE] * t, numbers[RATE]
-    lost, vx, vy, ax, ay, moment, pull = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    angle, rate, hub_x, hub_y = move_hub(t, numbers, base)
+    lost, vx, vy, ax, ay, moment, pull = 0.0, 0.0, 0.0, hub_x, hub_y, 0.0, 0.0
     power = -rate * (links[0, SPRING] * (theta[0] - angle) + links[0, DASHPOT] * (omega[0] - rate))
     for i in range(n):
         c, s = w[i, COS], w[i, SIN]
@@ -144,6 +160,7 @@ def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
         w[i, VX], w[i, VY] = vx, vy
         w[i, FORCE_X] = links[i, WEIGHT_X] - links[i, MASS_X] * (ax - along)
         w[i, FORCE_Y] = links[i, WEIGHT_Y] - links[i, MASS_Y] * (ay - across)
+        power -= links[i, MASS_X] * hub_x * (vx - swing * s) + links[i, MASS_Y] * hub_y * (vy + swing * c)
         vx, vy, ax, ay = vx - 2.0 * swing * s, vy + 2.0 * swing * c, ax - 2.0 * along, ay - 2.0 * across
     w[n - 1, TORQUE] = moment
     for k in range(loads.shape[0]):
@@ -163,8 +180,8 @@ def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     out[2 * n], out[2 * n + 1] = lost, power
 
 
-def flatten(system: ChainSystem) -> Model:
-    """The data of `accelerate`."""
+def flatten(system: ChainSystem, end: float = 0.0) -> Model:
+    """The data of `accelerate` up to the time `end`, s, which a moving base needs."""
     half, masses, n = system.lengths / 2.0, system.masses, system.n_links
     weights = [component * masses for component in system.gravity]
     along = masses * system.axial_inertia
@@ -174,12 +191,19 @@ def flatten(system: ChainSystem) -> Model:
         (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
     ]
-    numbers = (system.hub_rate, system.tip == "roller", system.axial_spring, 0.0, system.length)
+    if system.base is FIXED:
+        base, piece = np.zeros((1, 14)), np.inf
+        base[0, 1] = system.hub_rate
+    else:
+        base, piece = system.base.table(end), end / KNOTS
+    radius = system.base.hub_radius
+    numbers = (piece, system.tip == "roller", system.axial_spring, 0.0, system.length, radius)
     return Model(
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
         np.array(loads, dtype=float).reshape(len(loads), 7),
         np.array(numbers, dtype=float),
         np.zeros((n + 1, UNIT + 1)),
+        base,
     )
 
 

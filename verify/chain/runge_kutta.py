@@ -29,6 +29,8 @@ class Model(NamedTuple):
     loads: Array
     numbers: Array
     scratch: Array
+    base: Array
+    """(pieces, 14), motion of the hub by `Base.table`."""
 
 
 class Tableau(NamedTuple):
@@ -54,7 +56,7 @@ class State(NamedTuple):
 
 
 _named: Any = types.NamedTuple
-_model = _named((_table, _table, _vector, _table), Model)
+_model = _named((_table, _table, _vector, _table, _table), Model)
 _state = _named((_vector, _table, _vector, _vector, types.Array(types.int64, 1, "C")), State)
 ACCELERATION = types.void(types.float64, _vector, _vector, _model)
 """accelerate(t, y, out, model)"""

@@ -17,6 +17,7 @@ from verify.blas import one_blas_thread
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
 from verify.linear.positions import Numbers, as_vector
+from verify.problem.base_motion import FIXED
 from verify.problem.beam import Beam
 from verify.settings import DEFAULT, Joints, Wall
 from verify.validation import check_integer, check_number
@@ -61,6 +62,8 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
 
     The frame rotates with a steadily rotating hub. Raises InputError for loads and supports that do not.
     """
+    if system.base is not FIXED:
+        raise InputError("chain.base: an equilibrium has a base at rest or a steady hub_rate, give one of the two")
     lengths, n_closures = system.lengths, int(system.tip == "roller")
     theta = np.cumsum(angles)
     c, s = np.cos(theta), np.sin(theta)

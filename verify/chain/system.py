@@ -13,6 +13,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
+from verify.problem.base_motion import FIXED, Base
 from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
@@ -48,13 +49,23 @@ class ChainSystem:
     """(N,), EA of links that stretch, N; (0,) of rigid ones."""
     axial_inertia: bool = True  # whether links have inertia along x, which rigid links overestimate
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
-    hub_rate: float = 0.0  # angular velocity of the hub, rad/s, whose angle at time 0 is 0
+    hub_rate: float = 0.0  # steady angular velocity of the hub, rad/s, whose angle at time 0 is 0
+    base: Base = FIXED
+    """Prescribed motion of the hub in time, in place of `hub_rate`; for rigid links with a free tip."""
     loads: tuple[LinkLoad, ...] = ()
 
     @property
     def n_links(self) -> int:
         """N."""
         return len(self.lengths)
+
+    def hub(self, times: float | Array) -> tuple[Array, Array]:
+        """Angle, rad, and rate, rad/s, of the hub at times (...)."""
+        at = np.asarray(times, dtype=float)
+        if self.base is FIXED:
+            return self.hub_rate * at, np.full_like(at, self.hub_rate)
+        angle, rate, _ = np.array([self.base.rotation(t) for t in at.ravel().tolist()]).reshape(-1, 3).T
+        return angle.reshape(at.shape), rate.reshape(at.shape)
 
     @property
     def rigid(self) -> bool:

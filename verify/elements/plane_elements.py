@@ -1,0 +1,261 @@
+"""Large in-plane motion of a beam: nonlinear Hermite elements, geometrically exact, by scikit-fem's basis.
+
+Both coordinates r(s) = (x, y) of the line of centroids are cubic Hermite polynomials of the arc length s of the
+straight beam. With the stretch J = |r'| and the curvature kappa = theta' = (r' x r'')/J^2 the energy per length is
+
+    EA (J - 1)^2 / 2 + EI kappa^2 / 2,      rho A |dr/dt|^2 / 2
+
+without shear and rotary inertia (J. C. Simo and L. Vu-Quoc, Comput. Methods Appl. Mech. Engrg. 58 (1986) 79, in that
+limit). Bending is integrated at four points of Gauss. A cubic cannot bend without stretching, which full integration of
+EA resists (membrane locking); two points leave a mechanism of the slopes, that a hundredth of EA would restrain at the
+cost of accuracy: a tenth of EI/l^2 at the four points does it and vanishes with the element. The mass matrix is
+constant, and the tangent of the straight beam across its length is the matrix of `fem_beam`.
+
+The beam moves relative to a base with prescribed motion: unknowns are coordinates in the base's frame, so that a clamp
+fixes y' alone and leaves the stretch x' free; the base acts by inertia forces.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import solve_banded
+
+from verify.arrays import Array, Indices
+from verify.errors import InputError
+from verify.linear.mesh import Parts, divide
+from verify.problem.beam import Beam
+from verify.problem.supports import FIXED
+from verify.validation import check_integer, check_number
+
+BAND = 7  # an element couples two nodes of four values
+RESTRAINT = 0.1  # stiffness of the stretch at four points, in EI/l^2: its error is far below that of bending
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+"""Rotation by 90 degrees."""
+UNIT = np.eye(2)
+
+
+class Forces(NamedTuple):
+    """Dead loads on the beam, in the frame of the ground."""
+
+    tip: Array = np.zeros(2)
+    """(2,), N, on the right end."""
+    moment: float = 0.0
+    """N m, on the right end."""
+    follower: Array = np.zeros(2)
+    """(2,), N, on the right end, along and across it."""
+    gravity: Array = np.zeros(2)
+    """(2,), m/s^2."""
+
+    def scaled(self, share: float) -> "Forces":
+        """A share of all loads."""
+        return Forces(share * self.tip, share * self.moment, share * self.follower, share * self.gravity)
+
+
+NONE = Forces()
+"""No loads."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneElements:
+    """Energy, mass and loads of a beam of nonlinear elements, and their assembly; see `NonlinearHermite`."""
+
+    beam: Beam
+    count: int
+    axial_stiffness: float | None = None
+    free: Array = field(init=False)
+    """(count + 1, 2, 2): 1 where a coordinate or slope of a node may move, else 0."""
+
+    def __post_init__(self) -> None:
+        check_integer("count", self.count, len(self.beam.pieces))
+        self.beam.check_features("the nonlinear elements", ("section",))
+        if self.beam.loss_factor:
+            raise InputError(f"beam.loss_factor = {self.beam.loss_factor!r}: nonlinear elements have none, give 0")
+        if self.axial_stiffness is not None:
+            check_number("axial_stiffness", self.axial_stiffness, "N", above=0)
+        free = np.ones((self.count + 1, 2, 2))
+        for node, support in zip((0, -1), self.beam.supports, strict=True):
+            free[node, :, 1] = [not fixed for fixed in FIXED[support]]
+        for node in (0, -1):  # the first end whose deflection is prevented does not slide
+            if not free[node, 0, 1]:
+                free[node, 0, 0] = 0.0
+                break
+        object.__setattr__(self, "free", free)
+
+    # --- Constant arrays -------------------------------------------------------------------------------------------
+
+    @cached_property
+    def parts(self) -> Parts:
+        """The elements."""
+        return divide(self.beam, self.count)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """(count + 1,), m."""
+        return self.parts.nodes * self.parts.unit
+
+    @cached_property
+    def straight(self) -> Array:
+        """State of the straight beam: (count + 1, 2, 2), of a node r = (x, y) in m, then r'."""
+        state = np.zeros((self.count + 1, 2, 2))
+        state[:, 0, 0], state[:, 1, 0] = self.nodes, 1.0
+        return state
+
+    @cached_property
+    def _shapes(self) -> tuple[Array, Array, Array]:
+        """Rows of r' and r'' at six points by the values of an element, (n, 6, 4, 8); EA ds and EI ds, (n, 6)."""
+        from skfem.assembly import CellBasis
+
+        from verify.elements.element import line_basis
+
+        full = line_basis(self.nodes, shear=False)
+        rows, axial, bending = [], [], []
+        ei, ea = self.parts.of("bending_stiffness"), self._axial
+        for basis in (full, CellBasis(full.mesh, full.elem, intorder=3)):
+            slopes, bends = (np.stack([w[k].grad[0] for w in basis.basis[:4]], axis=-1) for k in (0, 1))
+            table = np.zeros((*slopes.shape[:2], 4, 4, 2))
+            for axis in (0, 1):
+                table[:, :, axis, :, axis], table[:, :, 2 + axis, :, axis] = slopes, bends
+            rows.append(table.reshape(*slopes.shape[:2], 4, 8))
+            two = basis is not full
+            stretch = ea if two else RESTRAINT * ei / np.diff(self.nodes) ** 2
+            axial.append(stretch[:, None] * basis.dx)
+            bending.append((0.0 if two else 1.0) * ei[:, None] * basis.dx)
+        return np.concatenate(rows, 1), np.concatenate(axial, 1), np.concatenate(bending, 1)
+
+    @cached_property
+    def _axial(self) -> Array:
+        """EA of the elements, (n,), N."""
+        if self.axial_stiffness is not None:
+            return self.axial_stiffness * self.parts.axial_stiffnesses
+        return np.array([piece.axial_stiffness for piece in self.parts.pieces]).repeat(self.parts.shares)
+
+    @cached_property
+    def element_masses(self) -> Array:
+        """(n, 8, 8), kg: rho A by both coordinates alike."""
+        from verify.elements.element import element_matrices, inertia, line_basis
+
+        basis = line_basis(self.nodes, shear=False)
+        local = element_matrices(basis, inertia, self.parts.of("mass_per_length")).tolocal()
+        return np.asarray(np.einsum("nij,ab->niajb", local, np.eye(2)).reshape(-1, 8, 8))
+
+    @cached_property
+    def _places(self) -> tuple[Indices, Indices]:
+        """Index of each value of an element, (n, 8), and of each entry of its matrix in banded storage, (n, 8, 8)."""
+        values = 4 * np.arange(self.count)[:, None] + np.arange(8)
+        row, column = values[:, :, None], values[:, None, :]
+        return values, (BAND + row - column) * 4 * (self.count + 1) + column
+
+    @cached_property
+    def _both_free(self) -> Array:
+        """1 for the entries of an element's matrix whose values are both free, (n, 8, 8)."""
+        free = self.of_elements(self.free)
+        return free[:, :, None] * free[:, None, :]
+
+    @cached_property
+    def _weights(self) -> Array:
+        """Generalised forces of unit accelerations along and across, (n, 8, 2), kg."""
+        uniform = np.kron([[1.0], [0.0], [1.0], [0.0]], np.eye(2))
+        return np.asarray(self.element_masses @ uniform)
+
+    def band(self, matrices: Array) -> Array:
+        """Element matrices (n, 8, 8) as bands (15, n_all); supported values keep no entry."""
+        n_all, kept = 4 * (self.count + 1), matrices * self._both_free
+        size = (2 * BAND + 1) * n_all
+        return np.asarray(np.bincount(self._places[1].ravel(), kept.ravel(), size).reshape(-1, n_all), dtype=float)
+
+    def vector(self, vectors: Array) -> Array:
+        """Element vectors (n, 8) as a vector (n_all,)."""
+        return np.asarray(np.bincount(self._places[0].ravel(), vectors.ravel(), 4 * (self.count + 1)), dtype=float)
+
+    def solve(self, bands: Array, right: Array) -> Array:
+        """Solution (count + 1, 2, 2) of a banded system; supported values do not change. Raises LinAlgError."""
+        free = self.free.reshape(-1)
+        bands = bands.copy()
+        bands[BAND] += 1.0 - free
+        solution = solve_banded((BAND, BAND), bands, right * free, overwrite_ab=True, check_finite=False)
+        return np.asarray(solution).reshape(self.free.shape)
+
+    @property
+    def values(self) -> Indices:
+        """Index of each value of an element, (n, 8), in a state."""
+        return self._places[0]
+
+    def of_elements(self, state: Array) -> Array:
+        """The values of each element, (n, 8), of a state."""
+        return np.asarray(state.reshape(-1)[self._places[0]])
+
+    # --- Energy and its derivatives --------------------------------------------------------------------------------
+
+    def energy(self, states: Array) -> Array:
+        """Strain energy, (...), J, of states (..., count + 1, 2, 2)."""
+        rows, axial, bending = self._shapes
+        values = states.reshape(*states.shape[:-3], -1)[..., self._places[0]]
+        a, b = np.split(np.einsum("nqij,...nj->...nqi", rows, values), 2, axis=-1)
+        stretch2 = (a * a).sum(-1)
+        kappa = (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / stretch2
+        return np.asarray(0.5 * (axial * (np.sqrt(stretch2) - 1.0) ** 2 + bending * kappa**2).sum((-2, -1)))
+
+    def elastic(self, state: Array) -> tuple[Array, Array]:
+        """Derivatives of the energy by the values of each element: first (n, 8), second (n, 8, 8).
+
+        With a = r', b = r'', p = -b turned by 90 degrees: kappa = a x b / J^2 has the derivatives p/J^2 - 2 kappa a/J^2
+        by a and (a turned by 90 degrees)/J^2 by b.
+        """
+        rows, axial, bending = self._shapes
+        both = (rows.reshape(self.count, -1, 8) @ self.of_elements(state)[..., None]).reshape(*axial.shape, 4)
+        a, b = both[..., :2], both[..., 2:]
+        stretch2 = (a * a).sum(-1)[..., None]
+        stretch = np.sqrt(stretch2)
+        tangent, turned, p = a / stretch, a @ QUARTER.T, -b @ QUARTER.T
+        kappa = (turned * b).sum(-1)[..., None] / stretch2
+        by_a, by_b = (p - 2.0 * kappa * a) / stretch2, turned / stretch2
+        strain = stretch - 1.0
+        ea, ei = axial[..., None], bending[..., None]
+        moment = ei * kappa
+        gradient = np.concatenate([ea * strain * tangent + moment * by_a, moment * by_b], axis=-1)
+
+        square, mixed = outer(tangent, tangent), outer(p, a)
+        ea, ei, moment, stretch, stretch2, kappa = (
+            array[..., None] for array in (ea, ei, moment, stretch, stretch2, kappa)
+        )
+        second = (8.0 * kappa * square - 2.0 * kappa * UNIT) / stretch2
+        second -= 2.0 * (mixed + mixed.swapaxes(-1, -2)) / stretch2**2
+        hessian = np.empty((*axial.shape, 4, 4))
+        hessian[..., :2, :2] = ea * (square + (1.0 - 1.0 / stretch) * (UNIT - square)) + (
+            ei * outer(by_a, by_a) + moment * second
+        )
+        mixed = -QUARTER / stretch2 - 2.0 * outer(a, turned) / stretch2**2
+        hessian[..., :2, 2:] = ei * outer(by_a, by_b) + moment * mixed
+        hessian[..., 2:, :2] = hessian[..., :2, 2:].swapaxes(-1, -2)
+        hessian[..., 2:, 2:] = ei * outer(by_b, by_b)
+        n = self.count
+        flat = rows.reshape(n, -1, 8)
+        curved = (hessian @ rows).reshape(n, -1, 8)
+        return (gradient.reshape(n, 1, -1) @ flat)[:, 0], flat.swapaxes(1, 2) @ curved
+
+    # --- Loads -----------------------------------------------------------------------------------------------------
+
+    def loads(self, forces: Forces, state: Array) -> tuple[Array, Array]:
+        """Generalised forces of the elements (n, 8), and their derivatives by the state, (n, 8, 8)."""
+        vectors, matrices = self._weights @ forces.gravity, np.zeros((self.count, 8, 8))
+        vectors[-1, 4:6] += forces.tip
+        if not (forces.moment or forces.follower.any()):
+            return vectors, matrices
+        a = state[-1, 1]
+        square, turned = float(a @ a), QUARTER @ a
+        tangent = a / square**0.5
+        frame = np.stack([tangent, QUARTER @ tangent], axis=1)
+        turning = np.outer(frame[:, 1], frame[:, 1]) / square**0.5
+        vectors[-1, 4:6] += frame @ forces.follower
+        vectors[-1, 6:] += forces.moment * turned / square
+        along, across = forces.follower
+        matrices[-1, 4:6, 6:] = along * turning + across * QUARTER @ turning
+        matrices[-1, 6:, 6:] = forces.moment * (QUARTER / square - 2.0 * np.outer(turned, a) / square**2)
+        return vectors, matrices
+
+
+def outer(a: Array, b: Array) -> Array:
+    """Products a_i b_j of vectors (..., k)."""
+    return a[..., :, None] * b[..., None, :]
