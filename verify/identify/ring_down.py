@@ -1,0 +1,195 @@
+"""Frequencies and damping ratios of a record of free vibration, with 95 % intervals.
+
+y_c(t) = sum_m e^{-zeta_m w_m t} (a_cm cos d_m t + b_cm sin d_m t) + offset_c + drift_c t, with d^2 = w^2 (1 - zeta^2),
+for all channels c at once. The matrix pencil (Y. Hua and T. K. Sarkar, IEEE Trans. ASSP 38 (1990) 814) starts a least
+squares fit over all samples; modes are added while they lower Schwarz's criterion n ln(sum of squares) + p ln(n).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, log, pi, sqrt
+
+import numpy as np
+
+from verify.arrays import Array, ComplexArray
+from verify.errors import InputError
+from verify.identify.fit import COLOURED, Fit, Model, Parameter, fit
+from verify.validation import check_integer
+
+MOST_MODES = 8
+"""Modes that are looked for; a record of a beam rarely has more above its noise."""
+PENCIL = 600
+"""Samples of the start, thinned from the record: its Hankel matrix costs their cube."""
+EVEN = 1e-3
+"""Largest deviation of a time from even spacing, over the spacing, that the start ignores."""
+GAIN = 10.0
+"""Least fall of Schwarz's criterion by a mode: odds of 150 to 1."""
+FEWEST = 16
+"""Samples of the shortest record."""
+
+
+@dataclass(frozen=True)
+class RingMode:
+    """A mode of a record; intervals contain the true value with a probability of 95 % if the noise is white."""
+
+    hz: float
+    """Damped frequency, as it is counted in the record."""
+    hz_interval: tuple[float, float]
+    zeta: float
+    """Damping ratio; negative where the record grows."""
+    zeta_interval: tuple[float, float]
+    amplitude: tuple[float, ...]
+    """At the first sample, of every channel, in its unit."""
+
+    @property
+    def undamped_hz(self) -> float:
+        """Frequency without damping."""
+        return self.hz / float(np.sqrt(1.0 - self.zeta**2))
+
+
+@dataclass(frozen=True)
+class RingDown:
+    """Modes of a record by frequency, its noise (sd, unit of the signal), and whether the residuals are white."""
+
+    modes: tuple[RingMode, ...]
+    noise: float
+    white: bool
+
+    @property
+    def hertz(self) -> Array:
+        """Damped frequencies, (m,), Hz."""
+        return np.array([mode.hz for mode in self.modes])
+
+
+def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, n_modes: int | None = None) -> RingDown:
+    """Modes of a free vibration sampled at `times` (n,), s, in `signals` (n,) or (n, channels).
+
+    `n_modes`: default those that the record tells from its noise. Raises InputError for fewer than 16 samples, times
+    that do not ascend, values that are not finite, and a record in which nothing rings.
+    """
+    t, y = np.asarray(times, dtype=float), np.asarray(signals, dtype=float)
+    y = y.reshape(len(y), -1)
+    if len(t) < FEWEST or len(t) != len(y):
+        raise InputError(f"record: {len(t)} times and {len(y)} rows of signals, give {FEWEST} or more of both")
+    if not (np.isfinite(t).all() and np.isfinite(y).all() and (np.diff(t) > 0.0).all()):
+        raise InputError("record: give finite values at ascending times")
+    if n_modes is not None:
+        check_integer("n_modes", n_modes, 1, MOST_MODES)
+    scale = np.ptp(y, axis=0)
+    if not scale.any():
+        raise InputError("record: its signals are constant, nothing rings")
+    y = (y / np.where(scale > 0.0, scale, 1.0))[:, scale > 0.0]
+    origin = t[0]
+    line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
+    best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
+    poles = _strongest(t - origin, y, _pencil(t - origin, y))
+    for m in (n_modes,) if n_modes else range(1, min(MOST_MODES, len(t) // 8) + 1):
+        if len(poles) < m:
+            break
+        try:
+            fitted = _fit(t - origin, y, poles[:m])
+        except InputError:  # of too few modes the least squares may wander
+            if n_modes:
+                raise
+            continue
+        size = y.size * log(max(float((fitted.residuals**2).sum()), 1e-300)) + (2 + 2 * y.shape[1]) * m * log(y.size)
+        if size > least - GAIN and not n_modes:
+            break
+        best, least = (m, fitted), size
+    if best is None:
+        raise InputError("record: no frequency rings in it above its noise, give a longer one or more samples")
+    count, fitted = best
+    modes = _modes(fitted, count, float(t[-1] - origin), scale[scale > 0.0])
+    return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected)
+
+
+def _pencil(t: Array, y: Array) -> ComplexArray:
+    """Candidate poles with positive imaginary part, 1/s: of the thinned record and of its first samples.
+
+    The former resolves slow modes, the latter keep fast ones below half their sampling rate.
+    """
+    spacing = t[-1] / (len(t) - 1)
+    if abs(t - spacing * np.arange(len(t))).max() > EVEN * spacing:
+        even = np.linspace(0.0, t[-1], len(t))
+        t, y = even, np.stack([np.interp(even, t, channel) for channel in y.T], axis=1)
+    line = np.polynomial.polynomial.polyfit(t, y, 1)
+    rest = y - np.polynomial.polynomial.polyval(t, line).T
+    found, every = list[ComplexArray](), max(len(t) // PENCIL, 1)
+    while every:
+        part = rest[: every * PENCIL : every]
+        columns = len(part) // 3
+        hankel = np.concatenate([np.lib.stride_tricks.sliding_window_view(one, columns) for one in part.T])
+        _, _, right = np.linalg.svd(hankel, full_matrices=False)
+        shape = right[: 2 * MOST_MODES + 2].T  # two more for what is left of offset and drift
+        roots = np.linalg.eigvals(np.linalg.lstsq(shape[:-1], shape[1:], rcond=None)[0])
+        poles = np.log(roots[(abs(roots) > 0.0) & (roots.imag > 0.0)]) / (spacing * every)
+        found.append(poles[(poles.imag * t[-1] > pi) & (abs(poles.real) < 2.0 * abs(poles.imag))])
+        every //= 8
+    return np.concatenate(found)
+
+
+def _strongest(t: Array, y: Array, poles: ComplexArray) -> ComplexArray:
+    """Candidate poles in the order in which each leaves least of the signals beside those before it.
+
+    At most MOST_MODES, judged at PENCIL samples that are not even, so that no frequency is thinned to another.
+    """
+    some = np.sort(np.random.default_rng(49).permutation(len(t))[: 2 * PENCIL])
+    t, y, chosen = t[some], y[some], list[complex]()
+    while len(chosen) < MOST_MODES:
+        best = np.inf, 0j
+        for pole in poles.tolist():
+            if all(abs(pole - other) > 0.5 / t[-1] for other in chosen):
+                basis = _basis(t, np.array([*chosen, pole]))
+                rest = y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0]
+                best = min(best, (float((rest**2).sum()), pole), key=lambda one: one[0])
+        if best[0] == np.inf:
+            break
+        chosen.append(best[1])
+    return np.array(chosen)
+
+
+def _basis(t: Array, poles: ComplexArray) -> Array:
+    """Decaying cosines and sines of the poles, 1 and t, (n, 2 m + 2)."""
+    waves = np.exp(np.outer(t, poles))
+    return np.concatenate([waves.real, waves.imag, np.ones((len(t), 1)), t[:, None] / t[-1]], axis=1)
+
+
+def _fit(t: Array, y: Array, poles: ComplexArray) -> Fit:
+    """Least squares over all samples of every pole p = d (r + i)/t_n, all amplitudes, offsets and drifts."""
+    (n, channels), m = y.shape, len(poles)
+    weights = np.linalg.lstsq(_basis(t, poles), y, rcond=None)[0]
+    known = {f"d{i}": Parameter(float(pole.imag * t[-1])) for i, pole in enumerate(poles)}
+    known |= {f"r{i}": Parameter(float(pole.real / pole.imag)) for i, pole in enumerate(poles)}
+    places = [(c, k) for c in range(channels) for k in range(2 * m + 2)]
+    known |= {f"c{c},{k}": Parameter(float(weights[k, c])) for c, k in places}
+
+    def predict(values: Mapping[str, float]) -> tuple[Array, dict[str, Array]]:
+        d, r = (np.array([values[f"{name}{i}"] for i in range(m)]) for name in "dr")
+        basis, share = _basis(t, d * (r + 1j) / t[-1]), (t / t[-1])[:, None]
+        factors = np.array([values[f"c{c},{k}"] for c, k in places]).reshape(channels, -1).T
+        by = {}
+        for i in range(m):
+            wave, turned = basis[:, [i]], basis[:, [m + i]]
+            decay = share * (wave * factors[i] + turned * factors[m + i])
+            turn = share * (wave * factors[m + i] - turned * factors[i])
+            by[f"d{i}"], by[f"r{i}"] = (r[i] * decay + turn).T.ravel(), d[i] * decay.T.ravel()
+        for c, k in places:
+            column = np.zeros((channels, n))
+            column[c] = basis[:, k]
+            by[f"c{c},{k}"] = column.ravel()
+        return (basis @ factors).T.ravel(), by
+
+    model = Model(known, predict, t, (("time", "s"), ("signal", "")))
+    return fit(model, y.T.ravel(), list(known), profiles=False)
+
+
+def _modes(fitted: Fit, m: int, duration: float, scale: Array) -> tuple[RingMode, ...]:
+    """Modes by frequency of a fit whose signals were divided by `scale`, (channels,)."""
+    modes, value = [], {name: one.value for name, one in fitted.estimates.items()}
+    for i in range(m):
+        low, high = (edge / (2.0 * pi * duration) for edge in fitted.estimates[f"d{i}"].interval)
+        ratios = [-r / sqrt(1.0 + r * r) for r in (value[f"r{i}"], *fitted.estimates[f"r{i}"].interval)]
+        size = [hypot(value[f"c{c},{i}"], value[f"c{c},{m + i}"]) * scale[c] for c in range(len(scale))]
+        hertz = value[f"d{i}"] / (2.0 * pi * duration)
+        modes.append(RingMode(hertz, (low, high), ratios[0], (ratios[2], ratios[1]), tuple(map(float, size))))
+    return tuple(sorted(modes, key=lambda mode: mode.hz))
