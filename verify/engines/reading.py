@@ -4,9 +4,10 @@ MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias o
 standard library; the springs of URDF are those of Gazebo's extension.
 """
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,8 +17,12 @@ from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
 
 SLIDE = "is a slide or a free base"
-ROUND = (3, 5)
-"""Types of geoms of MuJoCo: capsule, cylinder."""
+ROUND, BOX = (3, 5), 6
+"""Types of geoms of MuJoCo: capsule, cylinder; box."""
+SPIN = 1e-6
+"""Negative principal inertia over the largest one that rounding of a file's digits explains."""
+LIMITS = ("lower", "-"), ("upper", "")
+"""Ends of the range of a joint and the sign of their defaults."""
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
 
@@ -38,7 +43,7 @@ class Move(NamedTuple):
 class Solid(NamedTuple):
     """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
 
-    `radius`: of the cylinder or capsule that is drawn for it, m, else 0.
+    What is drawn for it: `radius` of the cylinder or capsule, m, else 0; `shape`: squares of half lengths, (3, 3).
     """
 
     name: str
@@ -49,13 +54,17 @@ class Solid(NamedTuple):
     inertia: Array
     moves: tuple[Move, ...]
     radius: float = 0.0
+    shape: Array = np.zeros((3, 3))
 
 
 class Line(NamedTuple):
     """The chain in one bending plane, N joints with a link beyond each. SI.
 
     A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
-    mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms.
+    mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms. `about`,
+    `across`: directions of the hinges and of the other ones at right angles in the world. `deep`: square of the depth
+    of the section across the hinges over that along them, by what is drawn and by inertias of prisms, NaN where
+    unknown. `ball`: the hinges are those of ball joints.
     """
 
     axis: Axis
@@ -63,6 +72,10 @@ class Line(NamedTuple):
     springs: Array
     links: Array
     solid: bool
+    about: str
+    across: str
+    deep: tuple[float, float]
+    ball: bool
 
 
 def read(path: Path) -> tuple[str, list[Solid], Array]:
@@ -70,30 +83,67 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
 
     Gravity of SDF and URDF is that of an empty world.
     """
-    earth = np.array([0.0, 0.0, -9.81])
+    gravity = np.array([0.0, 0.0, -9.81])
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
-            return root.tag, *_mjcf(path)
-        if root.tag == "sdf":
-            return root.tag, _xml(next(root.iter("model")), path.name, None), earth
-        if root.tag == "robot":
-            springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
-            return root.tag, _xml(root, path.name, springs), earth
-    except InputError:
-        raise
-    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
+            solids, gravity = _mjcf(path, root)
+        elif root.tag == "sdf":
+            solids = _xml(next(root.iter("model"), root), None)
+        elif root.tag == "robot":
+            solids = _xml(root, {one.get("reference", ""): one for one in root.findall("gazebo[springStiffness]")})
+        else:
+            raise InputError(f"its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
+        _check(solids)
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from None
+    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError) as error:
         raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
-    raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
+    return root.tag, solids, gravity
 
 
-def _mjcf(path: Path) -> tuple[list[Solid], Array]:
-    """The bodies at the angles where the springs have no moment, and gravity."""
+def _check(solids: list[Solid]) -> None:
+    """Raise InputError for values that no body and no spring has."""
+    if not any(one.moves for one in solids):
+        raise InputError("it has no joints, give a chain of bodies with hinges and springs")
+    for one in solids:
+        for move in one.moves:
+            if not 0.0 <= move.stiffness < np.inf:
+                raise InputError(f"joint {shown(move.joint)}: stiffness = {move.stiffness!r}, give N m/rad, 0 or more")
+        if not (0.0 <= one.mass < np.inf and np.isfinite(one.inertia).all() and np.isfinite(one.centre).all()):
+            raise InputError(f"{shown(one.name)}: its mass or inertia is negative or no number, give kg and kg m^2")
+        if (spin := np.linalg.eigvalsh(one.inertia))[0] < -SPIN * spin[-1]:
+            raise InputError(
+                f"{shown(one.name)}: its inertia has the principal value {spin[0]:.3g} kg m^2, give none below 0"
+            )
+
+
+def _compiled(path: Path, root: ElementTree.Element) -> Any:
+    """MuJoCo's model of a file. Raises InputError."""
     try:
         import mujoco
     except ImportError:
-        raise InputError(f"{path.name}: MJCF is compiled by MuJoCo, install it: pip install mujoco") from None
-    model = mujoco.MjModel.from_xml_path(str(path.resolve()))
+        raise InputError("MJCF is compiled by MuJoCo, install it: pip install mujoco") from None
+    for one in root.iter():
+        for key, value in one.attrib.items():
+            if key != "name" and {"nan", "+nan", "-nan"} & {*value.lower().split()}:
+                raise InputError(f"{one.tag} {shown(one.get('name', ''))}: {key} = {shown(value)}, give finite numbers")
+    try:
+        return mujoco.MjModel.from_xml_path(str(path.resolve()))
+    except ValueError as error:
+        text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML Error: ")
+        if root.find(".//composite") is not None:
+            text = "composite, which MuJoCo 4 lacks: write its bodies and joints out by mj_saveLastXML of MuJoCo 3"
+        raise InputError(f"MuJoCo does not compile it, {text}") from None
+
+
+def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array]:
+    """The bodies at the angles where the springs have no moment, and gravity."""
+    model = _compiled(path, root)
+    import mujoco
+
+    if not model.njnt:
+        return [], np.array(model.opt.gravity)
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos_spring
@@ -122,10 +172,15 @@ def _mjcf(path: Path) -> tuple[list[Solid], Array]:
         inertia = (own * model.body_inertia[b]) @ own.T
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        drawn = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
-        radii = [float(model.geom_size[i, 0]) for i in drawn if model.geom_type[i] in ROUND]
-        own_moves, radius, centre = tuple(moves(b)), max(radii, default=0.0), data.xipos[b].copy()
-        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius))
+        radius, shape = 0.0, np.zeros((3, 3))
+        for i in range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b]):
+            half, turn = np.array(model.geom_size[i]), data.geom_xmat[i].reshape(3, 3)
+            if round_one := int(model.geom_type[i]) in ROUND:
+                half, radius = half[[0, 0, 1]], max(radius, float(half[0]))
+            if round_one or model.geom_type[i] == BOX:
+                shape = max(shape, (turn * half**2) @ turn.T, key=np.trace)
+        own_moves, centre = tuple(moves(b)), data.xipos[b].copy()
+        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius, shape))
     return solids, np.array(model.opt.gravity)
 
 
@@ -136,13 +191,26 @@ def _value(one: ElementTree.Element | None, path: str) -> str:
     return "" if at is None else at.get(last) or (at.findtext(last) or "").strip()
 
 
-def _pose(one: ElementTree.Element | None) -> Array:
+def _numbers(one: ElementTree.Element, path: str, default: str, *counts: int) -> list[float]:
+    """As many finite numbers as one of `counts`, by default 1. Raises InputError."""
+    words = _value(one, path) or default
+    try:
+        values = [float(word) for word in words.split()]
+    except ValueError:
+        values = []
+    if len(values) not in (counts or (1,)) or not np.isfinite(values).all():
+        remedy = " or ".join(map(str, counts)) + " finite numbers" if counts else "a finite number"
+        raise InputError(f"{one.tag} {shown(one.get('name', ''))}: {path} = {shown(words)}, give {remedy}")
+    return values
+
+
+def _pose(one: ElementTree.Element, within: str = "") -> Array:
     """The transformation (4, 4) of an element's origin (URDF) or pose (SDF): x y z, roll pitch yaw."""
-    words = _value(one, "pose") or f"{_value(one, 'origin/xyz') or '0 0 0'} {_value(one, 'origin/rpy')}"
-    if len(words.split()) > 6:
-        raise ValueError("a pose by a quaternion, give roll, pitch and yaw")
-    x, y, z, roll, pitch, yaw = [*map(float, words.split()), 0.0, 0.0, 0.0][:6]
-    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, "pose/degrees") == "true" else 1.0
+    if _value(one, within + "pose"):
+        x, y, z, roll, pitch, yaw = [*_numbers(one, within + "pose", "", 6, 3), 0.0, 0.0, 0.0][:6]
+    else:
+        (x, y, z), (roll, pitch, yaw) = (_numbers(one, f"{within}origin/{key}", "0 0 0", 3) for key in ("xyz", "rpy"))
+    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, within + "pose/degrees") == "true" else 1.0
     for angle, i, k in ((yaw, 0, 1), (pitch, 2, 0), (roll, 1, 2)):
         turn, c, s = np.eye(4), np.cos(unit * angle), np.sin(unit * angle)
         turn[[i, k, i, k], [i, k, k, i]] = c, c, -s, s
@@ -151,53 +219,134 @@ def _pose(one: ElementTree.Element | None) -> Array:
     return pose
 
 
-def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] | None) -> list[Solid]:
+def _named(model: ElementTree.Element, tag: str, mark: str = "") -> dict[str, ElementTree.Element]:
+    """Elements by `mark` and name. Raises InputError where a name is missing or there twice."""
+    found = dict[str, ElementTree.Element]()
+    for i, one in enumerate(model.findall(tag), 1):
+        if not (name := one.get("name", "")) or mark + name in found:
+            raise InputError(f"{tag} {i} has {'the name of another' if name else 'no name'}, give each its own")
+        found[mark + name] = one
+    return found
+
+
+def _xml(model: ElementTree.Element, springs: dict[str, ElementTree.Element] | None) -> list[Solid]:
     """The links of a model of SDF, or of URDF with `springs` of its joints."""
     mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
-    links = {one.get("name", ""): one for one in model.findall("link")}
-    joints = {mark + one.get("name", ""): one for one in model.findall("joint")}
-    frames = {one.get("name", ""): one for one in model.findall("frame")} | joints | links
+    links, joints = _named(model, "link"), _named(model, "joint", mark)
     ends = {
         key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
         for key, one in joints.items()
     }
+    for key, (parent, child) in ends.items():
+        for end, name in (("parent", parent), ("child", child)):
+            if name not in links and (end, name) != ("parent", "world"):
+                text = f"its {end} is {shown(name)}" if name else f"it has no {end}"
+                raise InputError(f"joint {shown(joints[key].get('name', ''))}: {text}, give the name of a link")
     above = {child: (key, parent) for key, (parent, child) in ends.items()}
     if len(above) < len(ends):
-        raise InputError(f"{name}: a link is the child of two joints: closed loops are not read, open them")
-    places: dict[str, Array] = dict.fromkeys(("", "__model__", "world"), np.eye(4))
-
-    def place(frame: str) -> Array:
-        if frame not in places:
-            base = ends[frame][springs is None] if frame in joints else frames[frame].get("attached_to", "")
-            base = above.get(frame, ("",))[0] if springs is not None and frame in links else base
-            places[frame] = place(_value(frames[frame], "pose/relative_to") or base) @ _pose(frames[frame])
-        return places[frame]
-
-    order, solids = list[str](), list[Solid]()
-    while fresh := [key for key in links if key not in order and above.get(key, ("", "world"))[1] in ("world", *order)]:
-        order += fresh
+        raise InputError("a link is the child of two joints: closed loops are not read, open them")
+    place = _places(links, joints, _named(model, "frame"), ends, above, springs is None)
+    order, below = [key for key in links if above.get(key, ("", "world"))[1] == "world" != key], dict[str, list[str]]()
+    order = ["world", *order] if "world" in links else order
+    for key in links:
+        below.setdefault(above.get(key, ("", ""))[1], []).append(key)
+    for key in order:  # grows
+        order += below.get(key, []) if key != "world" else []
+    if len(order) < len(links):
+        raise InputError(f"link {shown(min(set(links) - set(order)))}: its joints lead round to itself, open the loop")
+    number = {key: i for i, key in enumerate(order)}
+    solids = list[Solid]()
     for key in order:
         at, one, (joint, parent) = place(key), links[key], above.get(key, ("", ""))
-        kind, moves, inertial = joints[joint].get("type", "") if joint else "fixed", [], one.find("inertial")
-        mass = float(_value(inertial, "mass/value") or _value(inertial, "mass") or 0)
-        if kind not in ("fixed", "revolute", "continuous", "prismatic"):
-            raise InputError(f"{name}: joint {shown(joint)} is of type {shown(kind)}, give hinges in its place")
-        if kind != "fixed":
+        mass, moves = _numbers(one, "inertial/mass/value" if springs is not None else "inertial/mass", "0")[0], []
+        if joint and joints[joint].get("type", "") != "fixed":
             if not mass:
-                raise InputError(f"{name}: link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
-            axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
-            old = "__model__" * (_value(axis, "use_parent_model_frame") in ("1", "true"))
-            frame = place(_value(axis, "xyz/expressed_in") or old or joint)
-            about = frame[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
-            own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
-            moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
-        centre = at @ _pose(inertial)
-        six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
-        inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
-        up = order.index(parent) if parent in order else -1
-        radii = [float(_value(shape, "radius") or 0.0) for kind in ("cylinder", "capsule") for shape in one.iter(kind)]
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), max(radii, default=0.0)))
+                raise InputError(f"link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
+            moves = list(_moves(joints[joint], joint, place, springs))
+        centre = at @ _pose(one, "inertial/")
+        pairs = ("xx", "xy", "xz", "yy", "yz", "zz")
+        six = np.array([_numbers(one, f"inertial/inertia/i{pair}", "0")[0] for pair in pairs])
+        inertia = centre[:3, :3] @ six[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
+        shape, radius = _drawn(one, at)
+        up = number.get(parent, -1)
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), radius, shape))
     return solids
+
+
+def _places(
+    links: dict[str, ElementTree.Element],
+    joints: dict[str, ElementTree.Element],
+    frames: dict[str, ElementTree.Element],
+    ends: dict[str, list[str]],
+    above: dict[str, tuple[str, str]],
+    sdf: bool,
+) -> Callable[[str], Array]:
+    """The place (4, 4) in the model by the name of a frame."""
+    known, every = dict.fromkeys(("", "__model__", "world"), np.eye(4)), frames | joints | links
+    open_frames = list[str]()
+
+    def place(frame: str) -> Array:
+        if frame not in known:
+            if frame not in every:
+                raise InputError(f"{shown(open_frames[-1])} is placed in the frame {shown(frame)}, which is missing")
+            if frame in open_frames:
+                raise InputError(
+                    f"the frames {', '.join(map(shown, open_frames))} are placed in each other, open the loop"
+                )
+            open_frames.append(frame)
+            base = ends[frame][sdf] if frame in joints else every[frame].get("attached_to", "")
+            base = above.get(frame, ("",))[0] if not sdf and frame in links else base
+            known[frame] = place(_value(every[frame], "pose/relative_to") or base) @ _pose(every[frame])
+            open_frames.pop()
+        return known[frame]
+
+    return place
+
+
+def _moves(
+    joint: ElementTree.Element, key: str, place: Callable[[str], Array], springs: dict[str, ElementTree.Element] | None
+) -> Iterator[Move]:
+    """The hinges of a joint of SDF, or of URDF with `springs`; the second of a universal joint is 'name axis2'."""
+    name, kind, at = joint.get("name", ""), joint.get("type", ""), place(key)
+    if kind not in ("revolute", "continuous", "prismatic", "universal"):
+        raise InputError(f"joint {shown(name)} is of type {shown(kind)}, give hinges in its place")
+    for axis in ("axis", "axis2")[: 1 + (kind == "universal")]:
+        bound, within = SLIDE * (kind == "prismatic"), f"{axis}/" if springs is None else ""
+        old = "__model__" * (_value(joint, f"{axis}/use_parent_model_frame") in ("1", "true"))
+        frame = place(_value(joint, f"{axis}/xyz/expressed_in") or old or key)
+        about = frame[:3, :3] @ _numbers(joint, f"{axis}/xyz", "0 0 1" if springs is None else "1 0 0", 3)
+        if not (size := np.linalg.norm(about)):
+            raise InputError(f"joint {shown(name)}: {axis}/xyz is zero, give a direction")
+        spring, rest = (joint, f"{axis}/dynamics/spring_") if springs is None else (springs.get(name, joint), "spring")
+        stiffness, reference = (
+            _numbers(spring, rest + (word if springs is None else word.capitalize()), "0")[0]
+            for word in ("stiffness", "reference")
+        )
+        low, high = (_numbers(joint, f"{within}limit/{end}", f"{sign}1e16")[0] for end, sign in LIMITS)
+        if kind != "continuous" and (low >= 0.0 or high <= 0.0):
+            bound = bound or "is at a limit"
+        if _numbers(joint, f"{within}dynamics/friction", "0")[0]:
+            bound = bound or "has dry friction"
+        if stiffness and reference:
+            bound = bound or f"has a spring at rest at {reference:.4g} rad"
+        yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound)
+
+
+def _drawn(link: ElementTree.Element, at: Array) -> tuple[Array, float]:
+    """Squares of the half lengths of what is drawn for a link, as a tensor (3, 3), and the radius of round ones."""
+    best, radius = np.zeros((3, 3)), 0.0
+    for kind in ("visual", "collision"):
+        for one in link.findall(kind):
+            half = np.zeros(3)
+            for name in ("cylinder", "capsule"):
+                if one.find(f"geometry/{name}") is not None:
+                    r, length = (_numbers(one, f"geometry/{name}/{key}", "0")[0] for key in ("radius", "length"))
+                    half, radius = np.array([r, r, 0.5 * length]), max(radius, r)
+            if one.find("geometry/box") is not None:
+                half = 0.5 * np.array(_numbers(one, "geometry/box/size", "0 0 0", 3))
+            turn = (at @ _pose(one))[:3, :3]
+            best = max(best, (turn * half**2) @ turn.T, key=np.trace)
+    return best, radius
 
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
@@ -212,7 +361,8 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
         up |= {i: above} if one.moves else {}
     sprung = [i for i in up if any(move.stiffness > 0.0 for move in solids[i].moves)]
     if not sprung:
-        raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
+        hint = " by gazebo/springStiffness" * name.lower().endswith(".urdf")
+        raise InputError(f"{name}: no hinge has a stiffness, give springs{hint}")
     chain = sprung[:1]
     while up[chain[0]] >= 0:
         chain.insert(0, up[chain[0]])
@@ -267,13 +417,44 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) != 1 or not moves[0].stiffness:
-                text = f"has no hinge with a stiffness for {axis}: a chain begins at a wall"
-                raise InputError(f"{name}: {shown(mains[j].name)} {text}")
+                text = "has no hinge with a stiffness" if len(moves) < 2 else "has two hinges"
+                remedy = "give it one, or fix the body to the one before" if len(moves) < 2 else "give it one"
+                raise InputError(f"{name}: {shown(mains[j].name)} {text} about {_direction(about)}, {remedy}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid))
+        ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
+        deep = _deep(mains, along, about, solid)
+        found.append(
+            Line(
+                axis,
+                joints,
+                springs,
+                np.stack(links, axis=1),
+                solid,
+                _direction(about),
+                _direction(np.cross(along, about)),
+                deep,
+                ball,
+            )
+        )
     return found
+
+
+def _direction(about: Array) -> str:
+    """A direction as in a file, of a positive sum: '0 0 1'."""
+    return " ".join(f"{one:.3g}" for one in np.round(about if about.sum() > 0.0 else -about, 6) + 0.0)
+
+
+def _deep(mains: list[Solid], along: Array, about: Array, solid: bool) -> tuple[float, float]:
+    """(b/a)^2 of a section of depth b across the hinges and a along them, by what is drawn and by inertias, or NaN."""
+    across = np.cross(along, about)
+    drawn = [(across @ one.shape @ across, about @ one.shape @ about) for one in mains if one.shape.any()]
+    spins = [[d @ one.inertia @ d for d in (along, about, across)] for one in mains]
+    inert = [(x + a - d, x + d - a) for x, a, d in spins] if solid else []
+    pairs = [np.array([pair for pair in each if min(pair) > 0.0]) for each in (drawn, inert)]
+    shape, spin = (float(np.median(one[:, 0] / one[:, 1])) if len(one) else np.nan for one in pairs)
+    return shape, spin
 
 
 def _joined(members: list[Solid]) -> Solid:
