@@ -34,6 +34,8 @@ AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
+DENSE = 150
+"""N from which a few modes take less time by Lanczos' method than all of them."""
 
 
 class Hinge(msgspec.Struct, frozen=True):
@@ -159,7 +161,7 @@ class RigidChain:
 
     def frequencies_hz(self, axis: Axis = "bending", n_modes: int | None = None) -> Array:
         """Elastic frequencies of the chain, (n_modes,) or all, ascending, Hz."""
-        return _frequencies(self, axis)[:n_modes]
+        return _frequencies(self, axis, n_modes if self.count > DENSE and n_modes else None)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
@@ -179,8 +181,15 @@ class RigidChain:
 
 
 @lru_cache(maxsize=16)
-def _frequencies(chain: RigidChain, axis: Axis) -> Array:
-    """All of `RigidChain.frequencies_hz`."""
+def _frequencies(chain: RigidChain, axis: Axis, few: int | None = None) -> Array:
+    """`RigidChain.frequencies_hz`: all, or a `few` of a chain from a wall on."""
+    springs = np.array([spring for *_, spring in chain.unknowns(axis)])
+    if few and few < chain.count // 4 and not chain.closed and springs.all():
+        from scipy.sparse.linalg import eigsh
+
+        mass, root = chain.matrices(axis)[0], 1.0 / np.sqrt(springs)
+        flexible = eigsh(mass * np.outer(root, root), few, return_eigenvectors=False, v0=root)
+        return np.asarray(np.sort(0.5 / (pi * np.sqrt(flexible))))
     loose = int(set(chain.beam.supports) == {"free"}) if axis == "torsion" else in_plane(chain.beam, axis).rigid_motions
     return small_motion_hz(*chain.matrices(axis), chain.constraints(axis), loose)
 

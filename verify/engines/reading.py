@@ -127,11 +127,13 @@ def _compiled(path: Path, root: ElementTree.Element) -> Any:
     for one in root.iter():
         for key, value in one.attrib.items():
             if key != "name" and {"nan", "+nan", "-nan"} & {*value.lower().split()}:
-                raise InputError(f"{one.tag} {shown(one.get('name', ''))}: {key} = {shown(value)}, give finite numbers")
+                name = next((above.get("name", "") for above in root.iter() if one in [*above]), "")
+                text = f"{one.tag} {shown(one.get('name') or f'in {name}')}: {key} = {shown(value)}"
+                raise InputError(f"{text}, give finite numbers")
     try:
         return mujoco.MjModel.from_xml_path(str(path.resolve()))
     except ValueError as error:
-        text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML Error: ")
+        text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML ").removeprefix("Error: ")
         if root.find(".//composite") is not None:
             text = "composite, which MuJoCo 4 lacks: write its bodies and joints out by mj_saveLastXML of MuJoCo 3"
         raise InputError(f"MuJoCo does not compile it, {text}") from None

@@ -93,7 +93,10 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
-    text, names = rule if support == "clamped" else f"{support} end", [line.joints[j] for j in (*law.odd, *steps)]
+    text, names = (
+        rule if support == "clamped" else f"{support} end",
+        [line.joints[j] for j in (*law.odd, *steps) if meant is None],
+    )
     faults = wall + odd + joints + links
     return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, links, advice, names)
 
