@@ -165,7 +165,7 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
     weight = own.mass_per_length * own.length * abs(float(gravity @ along)) / float(np.linalg.norm(along))
     if (ratio := weight * own.length**2 / judged[0].stiffness) > 0.1:
         hints.append(f"gravity acts along the chain, its weight is {ratio:.3g} EI/L^2: the frequencies are without it")
-    radius = float(np.median([one.radius for one in moving if one.radius] or 0.0))
+    radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9
         text = f"E = {modulus:.4g} GPa, or {modulus / SQUARE:.4g} GPa if it is a square section's; check by --beam"
