@@ -127,9 +127,8 @@ def _compiled(path: Path, root: ElementTree.Element) -> Any:
     for one in root.iter():
         for key, value in one.attrib.items():
             if key != "name" and {"nan", "+nan", "-nan"} & {*value.lower().split()}:
-                name = next((above.get("name", "") for above in root.iter() if one in [*above]), "")
-                text = f"{one.tag} {shown(one.get('name') or f'in {name}')}: {key} = {shown(value)}"
-                raise InputError(f"{text}, give finite numbers")
+                name = one.get("name") or next(above.get("name", "") for above in root.iter() if one in [*above])
+                raise InputError(f"{one.tag} {shown(name)}: {key} = {shown(value)}, give finite numbers")
     try:
         return mujoco.MjModel.from_xml_path(str(path.resolve()))
     except ValueError as error:
@@ -235,23 +234,23 @@ def _xml(model: ElementTree.Element, springs: dict[str, ElementTree.Element] | N
     """The links of a model of SDF, or of URDF with `springs` of its joints."""
     mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
     links, joints = _named(model, "link"), _named(model, "joint", mark)
-    ends = {
-        key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
-        for key, one in joints.items()
-    }
-    for key, (parent, child) in ends.items():
-        for end, name in (("parent", parent), ("child", child)):
+    above, bases, below = dict[str, tuple[str, str]](), dict[str, str](), dict[str, list[str]]()
+    for key, one in joints.items():
+        ends = [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
+        for end, name in zip(("parent", "child"), ends, strict=True):
             if name not in links and (end, name) != ("parent", "world"):
                 text = f"its {end} is {shown(name)}" if name else f"it has no {end}"
-                raise InputError(f"joint {shown(joints[key].get('name', ''))}: {text}, give the name of a link")
-    above = {child: (key, parent) for key, (parent, child) in ends.items()}
-    if len(above) < len(ends):
-        raise InputError("a link is the child of two joints: closed loops are not read, open them")
-    place = _places(links, joints, _named(model, "frame"), ends, above, springs is None)
-    order, below = [key for key in links if above.get(key, ("", "world"))[1] == "world" != key], dict[str, list[str]]()
-    order = ["world", *order] if "world" in links else order
+                raise InputError(f"joint {shown(one.get('name', ''))}: {text}, give the name of a link")
+        if ends[1] in above:
+            raise InputError(f"link {shown(ends[1])} is the child of two joints: closed loops are not read, open them")
+        above[ends[1]], bases[key] = (key, ends[0]), ends[springs is None]
+    frames = _named(model, "frame")
+    bases |= {key: one.get("attached_to", "") for key, one in frames.items()}
+    bases |= {} if springs is None else {child: key for child, (key, _) in above.items()}
+    place = _places(frames | joints | links, bases)
     for key in links:
-        below.setdefault(above.get(key, ("", ""))[1], []).append(key)
+        below.setdefault(above.get(key, ("", "" if key == "world" else "world"))[1], []).append(key)
+    order = [*below.get("", []), *below.get("world", [])]
     for key in order:  # grows
         order += below.get(key, []) if key != "world" else []
     if len(order) < len(links):
@@ -266,40 +265,28 @@ def _xml(model: ElementTree.Element, springs: dict[str, ElementTree.Element] | N
                 raise InputError(f"link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
             moves = list(_moves(joints[joint], joint, place, springs))
         centre = at @ _pose(one, "inertial/")
-        pairs = ("xx", "xy", "xz", "yy", "yz", "zz")
-        six = np.array([_numbers(one, f"inertial/inertia/i{pair}", "0")[0] for pair in pairs])
+        six = np.ravel([_numbers(one, f"inertial/inertia/i{d}", "0") for d in ("xx", "xy", "xz", "yy", "yz", "zz")])
         inertia = centre[:3, :3] @ six[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
-        shape, radius = _drawn(one, at)
-        up = number.get(parent, -1)
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), radius, shape))
+        radii = [_numbers(shape, "radius", "0")[0] for kind in ("cylinder", "capsule") for shape in one.iter(kind)]
+        radius, up = max(radii, default=0.0), number.get(parent, -1)
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), radius))
     return solids
 
 
-def _places(
-    links: dict[str, ElementTree.Element],
-    joints: dict[str, ElementTree.Element],
-    frames: dict[str, ElementTree.Element],
-    ends: dict[str, list[str]],
-    above: dict[str, tuple[str, str]],
-    sdf: bool,
-) -> Callable[[str], Array]:
-    """The place (4, 4) in the model by the name of a frame."""
-    known, every = dict.fromkeys(("", "__model__", "world"), np.eye(4)), frames | joints | links
-    open_frames = list[str]()
+def _places(every: dict[str, ElementTree.Element], bases: dict[str, str]) -> Callable[[str], Array]:
+    """The place (4, 4) in the model by the name of a frame; `bases`: frames that they are in without a name of one."""
+    known, above = dict.fromkeys(("", "__model__", "world"), np.eye(4)), list[str]()
 
     def place(frame: str) -> Array:
         if frame not in known:
             if frame not in every:
-                raise InputError(f"{shown(open_frames[-1])} is placed in the frame {shown(frame)}, which is missing")
-            if frame in open_frames:
-                raise InputError(
-                    f"the frames {', '.join(map(shown, open_frames))} are placed in each other, open the loop"
-                )
-            open_frames.append(frame)
-            base = ends[frame][sdf] if frame in joints else every[frame].get("attached_to", "")
-            base = above.get(frame, ("",))[0] if not sdf and frame in links else base
-            known[frame] = place(_value(every[frame], "pose/relative_to") or base) @ _pose(every[frame])
-            open_frames.pop()
+                raise InputError(f"{shown(above[-1])} is placed in the frame {shown(frame)}, which is missing")
+            if frame in above:
+                raise InputError(f"the frames {', '.join(map(shown, above))} are placed in each other, open the loop")
+            above.append(frame)
+            base = _value(every[frame], "pose/relative_to") or bases.get(frame, "")
+            known[frame] = place(base) @ _pose(every[frame])
+            above.pop()
         return known[frame]
 
     return place
@@ -319,36 +306,15 @@ def _moves(
         about = frame[:3, :3] @ _numbers(joint, f"{axis}/xyz", "0 0 1" if springs is None else "1 0 0", 3)
         if not (size := np.linalg.norm(about)):
             raise InputError(f"joint {shown(name)}: {axis}/xyz is zero, give a direction")
-        spring, rest = (joint, f"{axis}/dynamics/spring_") if springs is None else (springs.get(name, joint), "spring")
-        stiffness, reference = (
-            _numbers(spring, rest + (word if springs is None else word.capitalize()), "0")[0]
-            for word in ("stiffness", "reference")
-        )
+        one, paths = joint, [f"{axis}/dynamics/spring_{word}" for word in ("stiffness", "reference")]
+        if springs is not None:
+            one, paths = springs.get(name, joint), ["springStiffness", "springReference"]
+        stiffness, reference = (_numbers(one, path, "0")[0] for path in paths)
         low, high = (_numbers(joint, f"{within}limit/{end}", f"{sign}1e16")[0] for end, sign in LIMITS)
-        if kind != "continuous" and (low >= 0.0 or high <= 0.0):
-            bound = bound or "is at a limit"
-        if _numbers(joint, f"{within}dynamics/friction", "0")[0]:
-            bound = bound or "has dry friction"
-        if stiffness and reference:
-            bound = bound or f"has a spring at rest at {reference:.4g} rad"
+        at_limit, rubs = low >= 0.0 or high <= 0.0, _numbers(joint, f"{within}dynamics/friction", "0")[0]
+        bound = bound or "is at a limit" * (kind != "continuous" and at_limit) or "has dry friction" * bool(rubs)
+        bound = bound or f"has a spring at rest at {reference:.4g} rad" * bool(stiffness and reference)
         yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound)
-
-
-def _drawn(link: ElementTree.Element, at: Array) -> tuple[Array, float]:
-    """Squares of the half lengths of what is drawn for a link, as a tensor (3, 3), and the radius of round ones."""
-    best, radius = np.zeros((3, 3)), 0.0
-    for kind in ("visual", "collision"):
-        for one in link.findall(kind):
-            half = np.zeros(3)
-            for name in ("cylinder", "capsule"):
-                if one.find(f"geometry/{name}") is not None:
-                    r, length = (_numbers(one, f"geometry/{name}/{key}", "0")[0] for key in ("radius", "length"))
-                    half, radius = np.array([r, r, 0.5 * length]), max(radius, r)
-            if one.find("geometry/box") is not None:
-                half = 0.5 * np.array(_numbers(one, "geometry/box/size", "0 0 0", 3))
-            turn = (at @ _pose(one))[:3, :3]
-            best = max(best, (turn * half**2) @ turn.T, key=np.trace)
-    return best, radius
 
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
