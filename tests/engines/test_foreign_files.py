@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 from tests.engines.test_chain_files import STEEL, hertz, mujoco_hz
 from verify import Beam
 from verify.cli import status_of
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.engines.judgement import judge_file
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
 from verify import Beam, Section, SegmentModel
 from verify.cli import status_of
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.engines.judgement import judge_file
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError

@@ -12,7 +12,7 @@ springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the 
 wavenumber k.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -26,7 +26,7 @@ from verify.exact.torsion import shafts, torsion_hz
 from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
-from verify.settings import DEFAULT, WALLS, Theory
+from verify.settings import WALLS, Theory
 from verify.validation import check_choice, check_integer, check_number, check_type
 
 Axis = Literal["bending", "width", "torsion"]
@@ -210,16 +210,10 @@ def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: in
     return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))
 
 
-def describe(
-    beam: Beam, count: int, *, wall: str = DEFAULT.wall, in_space: bool = False, damping: float = 0.0
+def rigid_chain(
+    made: Callable[..., Any], beam: Beam, count: int, wall: str, in_space: bool = False, damping: float = 0.0
 ) -> RigidChain:
-    """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
-
-    `wall`: a rule whose joint 0 is at the wall. `damping`: damping ratio of the first mode about every axis. Joint 0 is
-    at the end with the stronger support.
-    """
-    from verify.segment_model import SegmentModel
-
+    """`describe` with the chain `made` by `SegmentModel` in each plane."""
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
     check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
@@ -234,7 +228,7 @@ def describe(
     series = tuple(PointSpring(position=s.position, rotational=s.rotational) for s in behind)
     unloaded, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
     linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
-    models = {a: SegmentModel(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
+    models = {a: made(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
     springs = {axis: m.beam.bending_stiffness / unit / m.chain.compliances for axis, m in models.items()}
     walls = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped" and rule.fault]
