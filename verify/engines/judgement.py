@@ -9,7 +9,8 @@ import numpy as np
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
 from verify.engines.correction import write_corrected
-from verify.engines.reading import Line, Solid, lines, read
+from verify.engines.line import Line, lines
+from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
 from verify.engines.section_axes import contradictions, planes
 from verify.errors import InputError, shown

@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.description import Hinge, Joint, Link, RigidChain
-from verify.engines.reading import Line
+from verify.engines.line import Line
 from verify.engines.stiffness_law import ALIKE, Law, law_of
 from verify.errors import InputError
 from verify.problem.beam import Beam
@@ -130,7 +130,13 @@ def _fitted(line: Line, soft: Array, expected: Array, support: str, meant: float
         raise InputError("masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene")
     law = law_of(k * bases[0], line.joints, meant)
     steady = np.where(np.isin(range(n), law.odd), 1.0, k * bases[0] / law.joints)
-    return _rule(steady, [np.ones(n)], support, _weld(soft))[0], 0, float(law.links[0]), law
+    rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft))
+    for j in (1, 2) if rule == IRREGULAR and meant is None and n > 3 else ():  # or one of them is off a rule, too
+        others = _rule(np.where(np.arange(n) == j, 0.0, steady), [np.ones(n)], support, _weld(soft))[0]
+        if others != IRREGULAR:
+            rule, law = others, law._replace(odd=[j, *law.odd])
+            break
+    return rule, 0, float(law.links[0]), law
 
 
 def _advice(line: Line, law: Law, inside: Array, steps: Array, hinged: Array | None) -> list[str]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.engines.description import AXES, Axis
-from verify.engines.reading import Line
+from verify.engines.line import Line
 from verify.problem.beam import Beam, in_plane
 
 APART = log(1.2)
