@@ -1,9 +1,10 @@
 """A chain of rigid links from a file of an engine against the exact beam it means: errors, corrections, verdict."""
 
+import itertools
 import re
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -64,18 +65,16 @@ def judge_file(
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
-    every = [_assess(one, modes, within) for one in judged]
-    rows = [row for one in every for row in one.rows]
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *(one.joints for one in every)]
-    margins, warnings = [one for each in every for one in each.margins], [w for one in judged for w in one.advice]
+    each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
+    rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
+    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *joints]
+    warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
         margins.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
-    data = [one.data for one in every]
-    worse = [one.worse for one in every if one.worse]
-    warnings += _hints(solids, gravity, judged, beam) + worse
-    if corrected and (clashes or worse):
+    warnings += [*_hints(solids, gravity, judged, beam), *filter(None, worse)]
+    if corrected and (clashes or any(worse)):
         why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
@@ -84,7 +83,7 @@ def judge_file(
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}."
     passed = max(float(abs(one["error"]).max()) for one in data) <= within and not clashes
-    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": data})
+    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": list(data)})
 
 
 def _changes(judged: list[Judged]) -> dict[str, float]:
@@ -93,18 +92,8 @@ def _changes(judged: list[Judged]) -> dict[str, float]:
     return {name: k for pairs in each[::-1] for name, k, old in pairs if name and abs(k - old) > SAME * k}
 
 
-class Assessed(NamedTuple):
-    """Rows of frequencies, table of joints; `worse`: why correct joints do not help."""
-
-    rows: list[tuple[object, ...]]
-    joints: "Table"
-    margins: list[Margin]
-    worse: str
-    data: dict[str, Any]
-
-
-def _assess(one: Judged, modes: int, within: float) -> Assessed:
-    """Errors of a chain as it is and with correct joints."""
+def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[Margin], str, dict[str, Any]]:
+    """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
     from verify.report.result import Column, Table
 
     n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(n_modes=modes)
@@ -127,20 +116,19 @@ def _assess(one: Judged, modes: int, within: float) -> Assessed:
         numbers, (old, new) = ", ".join(str(1 + mode) for mode in lost), (100.0 * x[lost[0]] for x in (errors, after))
         worse = f"errors of the file cancel at mode {numbers} in {axis}, the joints below are worse"
         worse += f" ({old:+.3g} to {new:+.3g} %): {cause}"
-    what = f"{n} links with correct joints"
     remedy = "set the joints below" + f", {cause}" * bool(one.odd) if any(changes) and not worse else cause
     if text:
         failure = f"{text}: {per_cent(size)} {where}"
         margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
     if (any(changes) and not worse) or not text:
         size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
-        what = f"{what}, but {'; '.join(one.links)}" if one.links else what
+        what = f"{n} links with correct joints" + f", but {'; '.join(one.links)}" * bool(one.links)
         margins.append(Margin(name=what, size=size, where=where, remedy=cause, **limits))
     own = one.present.beam
     about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
     about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
     about |= {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after, "odd": one.odd}
-    return Assessed(rows, joints, margins, worse, about)
+    return rows, joints, margins, worse, about
 
 
 def _cause(one: Judged) -> str:
