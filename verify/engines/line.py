@@ -110,20 +110,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
-        deep = _deep(mains, along, about, solid)
-        found.append(
-            Line(
-                axis,
-                joints,
-                springs,
-                np.stack(links, axis=1),
-                solid,
-                _direction(about),
-                _direction(np.cross(along, about)),
-                deep,
-                ball,
-            )
-        )
+        seen = _direction(about), _direction(np.cross(along, about)), _deep(mains, along, about, solid)
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball))
     return found
 
 
