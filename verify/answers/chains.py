@@ -8,7 +8,8 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
-from verify.engines.description import MOST_LINKS, RigidChain, describe
+from verify.engines.describe import describe
+from verify.engines.description import MOST_LINKS, RigidChain
 from verify.engines.writers import data, table, write
 from verify.errors import InputError
 from verify.problem.beam import Beam

@@ -1,0 +1,87 @@
+"""The law of EI that the joints of a chain follow: constant, stepped or smooth, and the joints off it."""
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.errors import InputError, shown
+
+ALIKE = 2e-3
+"""Relative difference up to which joints have the same EI."""
+RUN = 3
+"""Joints in a row of one EI that are a piece; fewer may be off the law."""
+ROUGH = 0.04
+"""Distance of EI at a joint from the geometric mean of its neighbours up to which the law is smooth."""
+MANY = 4
+"""Joints that a sentence names."""
+
+
+class Law(NamedTuple):
+    """EI without the joints off it, at the joints and of the links beyond, (N,), N m^2, and the numbers of those."""
+
+    kind: str
+    joints: Array
+    links: Array
+    odd: list[int]
+
+    def text(self, names: list[str], ratios: Array) -> str:
+        """The joints off the law by name, of `ratios` times its EI."""
+        each = [f"{names[j]} ({ratios[j]:.3g} times)" for j in self.odd]
+        more = f" and {len(each) - MANY} more" * (len(each) > MANY)
+        return f"joint{'s' * (len(each) > 1)} off a {self.kind} EI: {', '.join(each[:MANY])}{more}"
+
+
+def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
+    """The law of EI at the joints, `values` (N,). Those next to the wall, which have factors, follow from the others.
+
+    `meant`: constant EI that a scene has, N m^2, for values that have none. Raises InputError for values of no law.
+    """
+    n, first = len(values), min(3, len(values) // 3)
+    few, steps = max(1, n // 5), abs(values[first + 1 :] / values[first:-1] - 1.0) > ALIKE
+    starts = [first, *(first + 1 + np.flatnonzero(steps)).tolist(), n]
+    runs = [(a, b) for a, b in itertools.pairwise(starts) if b - a >= RUN - (a == first)]  # those at the wall are more
+    levels = np.array([np.median(values[a:b]) for a, b in runs])
+    lone = sorted(set(range(first, n)).difference(*(range(a, b) for a, b in runs)))
+    if runs and np.ptp(levels) <= ALIKE * levels.min() and len(lone) <= few:
+        level = np.full(n, float(np.median(levels)))
+        return Law("constant", level, level, lone)
+    level = np.full(n, float(np.median(values[first:])))
+    if np.ptp(values[first:]) < ROUGH * level[0]:
+        return Law("nearly constant", level, level, [])
+    if meant:
+        off = [j for j in range(first, n) if abs(values[j] / meant - 1.0) > ALIKE]
+        return Law("constant", np.full(n, meant), np.full(n, meant), off)
+    if len(runs) > 1 and len(lone) <= few + len(runs) - 1:
+        done = np.searchsorted([b for _, b in runs], np.arange(n), side="right")
+        before, ahead = levels[np.maximum(done - 1, 0)], levels[np.minimum(done, len(runs) - 1)]
+        series = [j for j in lone if min(before[j], ahead[j]) < values[j] < max(before[j], ahead[j])]
+        joints = np.where(np.isin(range(n), series), values, ahead)
+        return Law("stepped", joints, ahead, [j for j in lone if j not in series])
+    return _smooth(values, first, few, names)
+
+
+def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
+    """The law of which each value is near the geometric mean of its neighbours but for a `few` joints."""
+    law, odd = values.copy(), list[int]()
+    while len(law) - first > 2 * RUN:
+        log = np.log(law[first:])
+        ends = 2.0 * log[[1, -2]] - log[[2, -3]]
+        expected = np.exp(np.concatenate([ends[:1], 0.5 * (log[:-2] + log[2:]), ends[1:]]))
+        apart = abs(law[first:] - expected) / np.maximum(law[first:], expected)
+        apart[-2:] *= 0.1  # without much moment
+        worst = int(apart.argmax())
+        if apart[worst] < ROUGH:
+            near = np.arange(first, first + 4)
+            law[:first] = np.polyval(np.polyfit(near, law[near], 2), range(first))
+            if law.min() <= 0.0:
+                break
+            return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))
+        if len(odd) == few:
+            break
+        odd.append(first + worst)
+        law[first + worst] = expected[worst]
+    off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
+    text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
+    raise InputError(f"{text}: give the beam that they mean as a scene")
