@@ -135,7 +135,7 @@ def test_stiffness_section_and_inertia_lie_the_same_way(name, scene, tmp_path):
         assert list(chains) == ["width"]  # any stiffness is a strip's that bends in its width
         return
     assert result.data["passed"] == right == (tmp_path / "out.xml").exists()
-    assert any(margin.leads for margin in result.margins) != right
+    assert any(margin.harm == "premise" for margin in result.margins) != right
     if scene:
         thin, wide = (one / (2 * np.pi) * 1.8751041**2 / 0.7**2 * np.sqrt(206e9 / 7850 / 12) for one in (0.003, 0.025))
         for axis, one in chains.items():
