@@ -34,7 +34,7 @@ from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Loads, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment, check_features
 from verify.problem.device import Device
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT
@@ -385,7 +385,7 @@ class ExactModel(BeamModel):
 
 def check_in_time(beam: Beam, remedy: str = "give model = 'fem' or 'segment'") -> None:
     """Raise InputError for a beam without an exact time basis; `remedy` ends the message."""
-    beam.check_features("the exact beam in time", ("section", "mass"), remedy)
+    check_features(beam, "the exact beam in time", ("section", "bodies"), remedy)
     check_supported(beam)
 
 

@@ -25,7 +25,7 @@ from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, rigid_lines, with_attachments
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT, Theory
 from verify.validation import MOST_PARTS, check_integer
@@ -187,9 +187,9 @@ class HermiteModel(DiscreteModel):
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
             strains.append((self._rows(x), self._foundation * shares))
-        for spring in beam.spring:
-            at = np.array([spring.position / self.unit])
-            for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
+        for one in beam.attached:
+            at = np.array([one.position / self.unit])
+            for value, rotation in ((one.stiffness * self.unit**2, False), (one.rotational, True)):
                 if value:
                     most = RIGID * self.mesh.stiffnesses.max()
                     strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
@@ -216,7 +216,7 @@ class HermiteModel(DiscreteModel):
         beam, unit = self.beam, self.unit
         rows = [
             sqrt(value / beam.mass_per_length) * self._rows(np.array([body.position / unit]), rotation=rotation)
-            for body in beam.mass
+            for body in beam.attached
             for value, rotation in ((body.mass / unit, False), (body.rotary_inertia / unit**3, True))
             if value
         ]
@@ -224,7 +224,7 @@ class HermiteModel(DiscreteModel):
 
     def _rigid(self) -> Array:
         """Rigid motions, (n, 0 to 2)."""
-        lines, nodes = self.beam.rigid_lines, self.mesh.nodes
+        lines, nodes = rigid_lines(self.beam), self.mesh.nodes
         shapes = np.zeros((len(self.unknowns), len(lines)))
         for j, (a, b) in enumerate(lines):
             shapes[: 2 * len(nodes) : 2, j] = a / self.unit + b * nodes if b else a
@@ -295,8 +295,8 @@ class HermiteModel(DiscreteModel):
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """Cubics of all modes for motion in time, right-continuous at nodes."""
         fields = {"shapes": self.line(vectors), "edges": self.edges, "degree": 3}
-        if self.shear and self.beam.mass:
-            at = np.array([mass.position for mass in self.beam.mass])
+        if self.shear and self.beam.attached:
+            at = np.array([attachment.position for attachment in self.beam.attached])
             fields["turns"] = lambda: (self.load_rows(at, rotation=True) @ vectors).T / self.unit
         return fields
 
@@ -342,7 +342,7 @@ class HermiteModel(DiscreteModel):
         for first, stop in zip([0, *(last[:-1] + 1)], last + 1, strict=True):
             lengths = self.mesh.lengths[first:stop]
             section = section_at(self.beam, self.mesh.nodes[first] * self.unit)
-            element = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
+            element = replace(with_attachments(section), length=lengths.max() * self.unit, supports=("free", "free"))
             model = HermiteModel(element, 1, theory=self.theory)
             system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
             opposite[[2, 3], [0, 1]] = -1.0

@@ -28,7 +28,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import check_division
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, features
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
 from verify.segments.chain import link_inertia, right_of
@@ -83,7 +83,7 @@ class SegmentModel(ChainStructure):
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         super().__post_init__()
         check_division(self.beam, self.n_segments, self.grading)
-        if WALLS[self.wall].first and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if WALLS[self.wall].first and (features(self.beam) or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
                 f"wall = {self.wall!r} is for uniform beams of equal segments without attachments: choose another wall"
             )
@@ -191,7 +191,7 @@ class SegmentModel(ChainStructure):
         return places | {"readings": readings, "sampled": readings["corrected"], "curvatures": curvatures}
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
-        """Contact line through the corrected joints, or the "raw" links, and rotations of attached masses."""
+        """Contact line through the corrected joints, or the "raw" links, and rotations of attachments."""
         if self.reading != "corrected":
             raise InputError(
                 f"reading = {self.reading!r} is for harmonic fields: for motion in time give line = 'spline' "
@@ -205,7 +205,7 @@ class SegmentModel(ChainStructure):
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
-            rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
+            rows = self._rotations[[index[attachment.position] for attachment in self.beam.attached]]
             return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
         raw = line == "raw"
@@ -214,7 +214,7 @@ class SegmentModel(ChainStructure):
             if raw
             else line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
         )
-        turns = rotations if self.beam.mass else None
+        turns = rotations if self.beam.attached else None
         return {"shapes": shapes, "edges": self.edges, "degree": 1 if raw else 3, "turns": turns}
 
     @property

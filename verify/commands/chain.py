@@ -144,7 +144,7 @@ def _result(chain: RigidChain, mode: int, *, brief: bool) -> Result:
         ]
     rule = f", {wall_label(chain.wall)}" if held else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
-    if chain.in_space and (chain.beam.mass or chain.springs):
+    if chain.in_space and chain.beam.attached:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [_shortened(table(chain)) if brief else table(chain), Table("Frequencies", columns, rows)]
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

@@ -193,14 +193,14 @@ def _projected(basis: TimeBasis, name: str, shape: Shape) -> tuple[Array, float]
     masses = np.array([piece.mass_per_length for piece in beam.pieces])
     weight = (half * weights).ravel() * masses[np.clip(np.searchsorted(steps, x, side="right") - 1, 0, len(masses) - 1)]
     shapes, values = basis.shapes(x, 0), function(x)
-    if beam.mass:
-        places, inertias = np.array([m.position for m in beam.mass]), np.array([m.rotary_inertia for m in beam.mass])
+    if beam.attached:
+        places, masses, inertias = np.array([(a.position, a.mass, a.rotary_inertia) for a in beam.attached]).T
         # difference quotient across the body: at a corner the mean of both sides
         left, right = np.maximum(places - NEAR * beam.length, 0.0), np.minimum(places + NEAR * beam.length, beam.length)
         turns = (function(right) - function(left)) / (right - left)
-        shapes = np.hstack([shapes, basis.shapes(places, 0), basis.body_turns()])
+        shapes = np.hstack([shapes, basis.shapes(places, 0), basis.attached_turns()])
         values = np.concatenate([values, function(places), turns])
-        weight = np.concatenate([weight, [m.mass for m in beam.mass], inertias])
+        weight = np.concatenate([weight, masses, inertias])
     weighted = shapes * weight
     q = np.linalg.solve(weighted @ shapes.T, weighted @ values)
     size = float(weight @ values**2)

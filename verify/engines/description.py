@@ -23,7 +23,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.problem.beam import Beam, in_plane
+from verify.problem.beam import Beam, check_features, in_plane, with_attachments
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT, WALLS, Theory
@@ -165,7 +165,7 @@ class RigidChain:
         """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
-            bodies = [(body.position, body.rotary_inertia) for body in self.beam.mass]
+            bodies = [(one.position, one.rotary_inertia) for one in self.beam.attached if one.massive]
             return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
@@ -212,18 +212,18 @@ def describe(
     from verify.segment_model import SegmentModel
 
     check_type("beam", beam, Beam)
-    beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
+    check_features(beam, "a chain for an engine", ("section", "attached"), "give forces in the engine")
     check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
     if mirrored := first < last:
         beam = beam.mirrored()
-    turning = [mass.position for mass in beam.mass if mass.rotary_inertia]
+    turning = [one.position for one in beam.attached if one.rotary_inertia]
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
-    behind = [s for s in beam.spring if s.rotational and s.position in {0.0, beam.length} - {*turning}]
+    behind = [s for s in beam.attached if s.rotational and s.position in {0.0, beam.length} - {*turning}]
     series = tuple(PointSpring(position=s.position, rotational=s.rotational) for s in behind)
-    unloaded, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
+    unloaded, rule = with_attachments(beam, spring=series), WALLS[wall]
     linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
     models = {a: SegmentModel(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
@@ -236,7 +236,8 @@ def describe(
     masses = lengths * parts.masses_per_length * beam.mass_per_length
     bodies = [
         (link, m.position - chain.nodes[link], share * m.mass, share * m.rotary_inertia)
-        for m in beam.mass
+        for m in beam.attached
+        if m.massive
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
@@ -262,7 +263,7 @@ def describe(
 
 def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spring]:
     """Springs between links and the ground; rotational ones at positions `behind` an end are in its joint."""
-    for spring in beam.spring:
+    for spring in beam.attached:
         turning = 0.0 if spring.position in behind else spring.rotational
         for link, share in _shares(chain, spring.position, turning):
             for rotational, k in ((False, spring.stiffness), (True, turning)):

@@ -17,7 +17,7 @@ from verify.arrays import Array
 from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.reading import Line, Solid, lines, read
 from verify.errors import InputError, shown
-from verify.problem.beam import Beam, in_plane
+from verify.problem.beam import Beam, check_features, in_plane
 from verify.problem.point_attachments import PointMass
 from verify.problem.supports import FIXED
 from verify.segments.walls import wall_factors
@@ -87,7 +87,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     behind = np.append(HELD, np.ones(n))[:n] if even and n > len(HELD) else np.append(np.nan, weld[1:])
     springs = reference / bases[0] / behind if held else hinged
     beam = beam or _meant(line, expected, support, reference)
-    bodies = sum(one.mass for one in beam.mass)
+    bodies = sum(attachment.mass for attachment in beam.attached)
 
     def chain(springs: Array) -> RigidChain:
         hinges = [() if np.isnan(one) else (Hinge("bending", float(one)),) for one in [*springs, 0.0]]
@@ -173,7 +173,7 @@ def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str,
 
 def _in_its_plane(line: Line, beam: Beam, name: str) -> Beam:
     """The beam from the wall of a line on, turned to the plane whose EI is nearer. Raises InputError."""
-    beam.check_features("the comparison of a file", ("section", "mass"))
+    check_features(beam, "the comparison of a file", ("section", "bodies"))
     beam = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
         remedy = ": a first link without a joint must be a body" * (length < beam.length)

@@ -21,7 +21,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact.layout import BeamLayout, Station, layout_of
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, rigid_lines
 
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
 """Minor of the quantities that a support sets to zero; that of the others is 4 less this."""
@@ -305,10 +305,10 @@ def buckling_load(beam: Beam) -> float:
     The root of the characteristic equation at omega = 0 by Euler-Bernoulli theory, for a force of constant direction.
     """
     bare = replace(beam, tension=0.0)
-    if any(slope for _, slope in bare.rigid_lines):
+    if any(slope for _, slope in rigid_lines(bare)):
         return 0.0
     layout = layout_of(bare)
-    if bare.rigid_lines:  # a translation changes no energy: the left end is pinned
+    if rigid_lines(bare):  # a translation changes no energy: the left end is pinned
         left = {"free": "pinned", "guided": "clamped"}[layout.supports[0]]
         layout = replace(layout, supports=(left, layout.supports[1]))
     root = nth_root(lambda root: count_at(replace(layout, tension=-root * root), 0.0), 1)

@@ -13,7 +13,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.exact.layout import HELD
 from verify.exact.torsion import torsion_constant
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, features
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
 
@@ -44,7 +44,7 @@ def check_uniform(beam: Beam) -> None:
     """Raise InputError for a stepped beam and for attachments."""
     if not beam.uniform:
         raise InputError(
-            f"beam.{beam.features[0]}: a beam with it has no closed form, leave it out or use the analytic, fem or "
+            f"beam.{features(beam)[0]}: a beam with it has no closed form, leave it out or use the analytic, fem or "
             "segment model"
         )
 

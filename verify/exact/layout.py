@@ -19,7 +19,7 @@ import msgspec
 
 from verify.problem.beam import Beam
 from verify.problem.device import Device
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.point_attachments import Attachment
 
 SAME_PLACE = 1e-12
 """Distance, relative to the beam's length, below which two positions are one station."""
@@ -90,7 +90,7 @@ def layout_of(
     beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
 ) -> BeamLayout:
     """The layout of a beam with devices by a theory; `also`: additional stations, m."""
-    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.attached, *devices)
+    attached: tuple[Attachment | Device, ...] = (*beam.attached, *devices)
     cuts = [*(one.position for one in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0

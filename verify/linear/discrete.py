@@ -22,7 +22,7 @@ from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Loads, Numbers, as_vector, frequencies_on, vector_on
 from verify.linear.system import FEW, LOST, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import PointForce, PointLoad, PointMoment
+from verify.problem.beam import PointForce, PointLoad, PointMoment, is_lossless, rigid_lines
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.validation import check_choice, check_number
@@ -114,7 +114,7 @@ class DiscreteModel(BeamModel):
     @property
     def _tilts(self) -> bool:
         """Whether the beam without its axial force has a rigid-body rotation."""
-        return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
+        return any(b for _, b in rigid_lines(structs.replace(self.beam, tension=0.0)))
 
     def check_memory(self, n_modes: int = 0) -> None:
         """Raise InputError for a system of more than 10 GB (`system.memory`), before it is built."""
@@ -187,7 +187,7 @@ class DiscreteModel(BeamModel):
             raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} uses all its modes, leave it out")
         values, vectors = self.stable_system.all_modes
         ratios = None
-        if self.beam.loss_factor and self.beam.lossless:
+        if self.beam.loss_factor and is_lossless(self.beam):
             # half the loss factor times the lossy fraction of each modal stiffness
             energies = self.stable_system.strain(vectors) ** 2
             ratios = 0.5 * (np.imag(self.lossy_stiffness(1.0)) @ energies) / (self.stable_system.stiffness @ energies)
@@ -324,7 +324,7 @@ class DiscreteModel(BeamModel):
         Bodies place nodes, and elastic joints at the ends; elsewhere a moment is of order 1 or 2, a device of order 3.
         """
         beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
-        bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
+        bodies = {attachment.position for attachment in beam.attached if attachment.rotary_inertia}
         missing = sorted(set(positions) - bodies)
         if not missing:
             return self

@@ -80,8 +80,8 @@ def static_sag(beam: Beam) -> float:
     # two Gauss points integrate the product of a constant load and a cubic
     x = np.concatenate([middles - halves / 3**0.5, middles + halves / 3**0.5]) * model.unit
     weight = GRAVITY * beam.mass_per_length * model.unit * np.tile(halves * parts.masses_per_length, 2)
-    x = np.append(x, [body.position for body in beam.mass])
-    weight = np.append(weight, [GRAVITY * body.mass for body in beam.mass])
+    x = np.append(x, [attachment.position for attachment in beam.attached])
+    weight = np.append(weight, [GRAVITY * attachment.mass for attachment in beam.attached])
     loads = model.load_rows(x).T @ weight[:, None] * (model.unit**3 / beam.bending_stiffness)
     try:
         with np.errstate(all="ignore"):  # sections may differ by more than double precision holds

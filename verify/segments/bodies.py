@@ -35,14 +35,12 @@ class Attached:
         """Attached masses and springs, summed at equal positions."""
         mass, stiffness = self.beam.mass_per_length * self.unit, self.beam.bending_stiffness / self.unit**3
         square, bodies = self.unit**2, dict[float, Body]()
-        each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * square), 0.0, 0.0)) for m in self.beam.mass]
-        each += [
-            (s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * square)))
-            for s in self.beam.spring
-        ]
-        for at, values in each:
-            before = bodies.get(at, Body(at, {0.0: 0, self.beam.length: 1}.get(at) if self.rule != "lever" else None))
-            bodies[at] = Body(*before[:2], *(a + b for a, b in zip(before[2:], values, strict=True)))
+        units, ends = (mass, mass * square, stiffness, stiffness * square), {0.0: 0, self.beam.length: 1}
+        for one in self.beam.attached:
+            body = bodies.get(at := one.position, Body(at, ends.get(at) if self.rule != "lever" else None))
+            values = (one.mass, one.rotary_inertia, one.stiffness, one.rotational)
+            sums = (a + value / size for a, value, size in zip(body[2:], values, units, strict=True))
+            bodies[at] = Body(*body[:2], *sums)
         return tuple(bodies.values())
 
     @cached_property

@@ -10,6 +10,7 @@ from verify.errors import InputError
 from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, divide
 from verify.linear.system import StructuralSystem
+from verify.problem.beam import is_stepped, rigid_lines
 from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights
@@ -59,7 +60,7 @@ class ChainStructure(DiscreteModel):
             masses=masses,
             inertias=inertias,
             elastic=self.attached.elastic,
-            flexibilities=lengths / self.links.stiffnesses if self.beam.stepped else None,
+            flexibilities=lengths / self.links.stiffnesses if is_stepped(self.beam) else None,
             reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
             if any(self.attached.elastic)
             else None,
@@ -219,7 +220,7 @@ class ChainStructure(DiscreteModel):
         """Rigid-body modes, (n, 0 to 2)."""
         x, motions = self.chain.nodes / self.unit, self.motions
         rigid = np.zeros((motions.n, self.beam.rigid_motions))
-        for column, (start, tilt) in enumerate(self.beam.rigid_lines):
+        for column, (start, tilt) in enumerate(rigid_lines(self.beam)):
             rigid[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
         if springs and rigid.size:
