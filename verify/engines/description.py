@@ -12,7 +12,7 @@ springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the 
 wavenumber k.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -271,7 +271,7 @@ def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spri
                     yield Spring(spring.position, link, rotational, share * k)
 
 
-def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: tuple[str, str]) -> Array:
+def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: Sequence[str]) -> Array:
     """Joints in torsion, (N + 1,), N m/rad, of links with GJ `twist` (N m^2) and polar inertia `spin` (kg m^2).
 
     A disk is at the centre of the inertia of its link and of the bodies on it: order 1 otherwise.

@@ -4,7 +4,7 @@ Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair 
 theory, and the frequencies of a rod in extension and torsion.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import atan, exp, pi, sqrt
 
 import numpy as np
@@ -49,7 +49,7 @@ def check_uniform(beam: Beam) -> None:
         )
 
 
-def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
+def wavenumber_length(supports: Sequence[str], mode: int) -> float:
     """beta_n L, dimensionless: (n + c) pi and a remainder by fixed-point iteration. Raises InputError for mode < 1."""
     check_mode(mode)
     c, rule, g = _ROOTS[frozenset(supports)]
@@ -63,7 +63,7 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
     return whole + remainder
 
 
-def unit_shapes(supports: tuple[str, str], betas: Array) -> Callable[[Array, int], Array]:
+def unit_shapes(supports: Sequence[str], betas: Array) -> Callable[[Array, int], Array]:
     """Euler-Bernoulli shapes at beta L (n,): (xi (m,), derivative by x / L) -> (n, m), mean square 1 over the length.
 
     Each is a sum of cos, sin, exp(-beta xi) and exp(-beta (1 - xi)), positive next to the left end.

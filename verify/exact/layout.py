@@ -58,7 +58,7 @@ class Station(NamedTuple):
 class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
     """Spans and stations of a beam."""
 
-    supports: tuple[str, str]
+    supports: Sequence[str]
     spans: tuple[UniformSpan, ...]
     """n spans from the left."""
     stations: tuple[Station, ...]

@@ -69,7 +69,7 @@ def stiffening(half_width: float, poissons_ratio: float) -> float:
 
 
 @lru_cache(maxsize=512)
-def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, mode: int) -> float:
+def ritz_error(supports: Sequence[str], aspect: float, poissons_ratio: float, mode: int) -> float:
     """Plate effect for any supports, by Ritz's method: an upper bound of the frequency. `aspect`: length over width.
 
     The energy is a sum of squares, (1 - nu^2) w_xx^2 + (w_yy + nu w_xx)^2 + 2 (1 - nu) w_xy^2 over D/2, so that the
@@ -124,7 +124,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     return sqrt(energy / float(mass[best]) / narrow) - 1.0
 
 
-def _along(supports: tuple[str, str], n: int) -> "list[Any]":
+def _along(supports: Sequence[str], n: int) -> "list[Any]":
     """Sparse coefficients, (n, functions), of w, w', w'' in orthonormal Legendre polynomials on (-1, 1).
 
     Cubic Hermite functions of the free end displacements and slopes, and twice integrated polynomials from degree 2 on,

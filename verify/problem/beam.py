@@ -12,7 +12,7 @@ from verify.errors import InputError, written
 from verify.problem.cross_section import CrossSection, Piece, Section, merged, piece_of, set_fields
 from verify.problem.point_attachments import Attachment, PointMass, PointSpring
 from verify.problem.supports import FIXED, Support
-from verify.validation import Relative, check_number, unit, validate
+from verify.validation import Items, Pair, Relative, check_number, unit, validate
 
 SHORTEST_SECTION = 1e-6  # shortest section relative to the beam's length; a shorter one may be a rounding residue
 
@@ -27,18 +27,18 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     length: Annotated[float, unit("m", gt=0)]
     """L, m."""
-    supports: tuple[Support, Support] = ("pinned", "pinned")
+    supports: Pair[Support] = ("pinned", "pinned")
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: Annotated[float, unit("dimensionless", gt=-1, le=0.5)] = 0.33
     """nu, for Timoshenko theory and plate theory only."""
     loss_factor: Annotated[Relative, unit("0 means undamped", ge=0, lt=10)] = 0.0
     """eta of the harmonic field, E (1 + i eta). At a resonance it equals a modal damping ratio of eta/2 times the
     fraction of the modal stiffness that is due to bending and shear."""
-    section: tuple[Section, ...] = ()
+    section: Items[Section] = ()
     """Sections of a stepped beam from left to right; their lengths add up to `length`."""
-    mass: tuple[PointMass, ...] = ()
+    mass: Items[PointMass] = ()
     """Attached rigid bodies."""
-    spring: tuple[PointSpring, ...] = ()
+    spring: Items[PointSpring] = ()
     """Springs to the ground."""
     tension: Annotated[float, unit("N, negative is compression")] = 0.0
     """Axial force, N, along the undeformed beam; negative is compression."""

@@ -1,5 +1,6 @@
 """Attachments of a beam at a point: each is a class of four coefficients. Values, no numerics."""
 
+from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
 import msgspec
@@ -67,7 +68,7 @@ class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         """Whether it has stiffness, to which the beam's loss factor does not apply."""
         return bool(self.stiffness or self.rotational)
 
-    def check_on(self, where: str, length: float, supports: tuple[str, str]) -> None:
+    def check_on(self, where: str, length: float, supports: Sequence[str]) -> None:
         """Raise InputError for a position off the beam, or on a support where a coefficient has no effect."""
         check_position(f"{where}.position", self.position, length)
         check_free(where, self.position, length, supports, self.across, self.around)

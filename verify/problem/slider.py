@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.settings import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
-from verify.validation import check_number, check_position, unit, validate
+from verify.validation import Items, check_number, check_position, unit, validate
 
 GRAVITY = 9.81
 STEEPNESS = 1e4
@@ -135,7 +135,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     moving mass with convective terms. massless: none, as in the paper. Friction uses N = m g + preload in both."""
     contact: Contact | None = None
     """Unilateral contact; None: bilateral, the slider never loses contact."""
-    foot: tuple[Foot, ...] = ()
+    foot: Items[Foot] = ()
     """Feet of a slider with [slider.contact], rigidly connected along x; default: one point."""
     external_force: Annotated[float, unit("N along x")] = 0.0
     """External force along +x on a slider with [slider.contact], N; a braking load is negative."""
@@ -191,7 +191,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     @property
     def feet(self) -> tuple[Foot, ...]:
         """The feet; by default one of one point."""
-        return self.foot or ONE_POINT
+        return tuple(self.foot) or ONE_POINT
 
     @property
     def steepness(self) -> float | None:

@@ -19,7 +19,7 @@ from verify.problem.supports import FIXED
 class Chain:
     """N rigid links and N + 1 joints; joints at pinned and free ends have no spring."""
 
-    supports: tuple[str, str]
+    supports: Sequence[str]
     unit: float  # unit of length, m
     lengths: Array  # (N,), lengths of the links
     compliances: Array  # (N + 1,), 1/k of joints 0..N; infinite without a spring
