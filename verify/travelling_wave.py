@@ -27,6 +27,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError
+from verify.formatting import one_line
 from verify.linear.field import HarmonicField, phasor, wavenumber
 from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers, positions_on, real_array
@@ -68,6 +69,7 @@ class WaveMeasures:
     """(m,), m: positions that separate the extremes of the field."""
     field: HarmonicField | None = None
     """The field in which the wave is; None of a time series."""
+    __repr__ = one_line(window="m", reflection="", standing_wave_ratio="")
 
     @property
     def reflection(self) -> float:

@@ -13,6 +13,7 @@ from verify.dynamics.excitation import check_damping, modal_rows
 from verify.dynamics.linear_system import basis_of
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown
+from verify.formatting import one_line
 from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
@@ -63,6 +64,7 @@ class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """State from which `simulate` continues (`start`)."""
     notes: tuple[str, ...]
     """Method of the modes; corners of the initial shape."""
+    __repr__ = one_line(model="", count="", times="s", deflection="m", frequencies_hz="Hz")
 
 
 @one_blas_thread()

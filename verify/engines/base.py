@@ -12,6 +12,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import RigidChain, describe
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.problem.beam import Beam, PointForce, check_features, check_frequency
 from verify.registry import Registry
 from verify.segment_model import SegmentModel
@@ -88,6 +89,7 @@ class Run:
     angles: Array
     rates: Array
     failure: str = ""
+    __repr__ = one_line(times="s", angles="rad", failure="")
 
 
 def centred(rates: Array) -> Array:

@@ -23,6 +23,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
+from verify.formatting import one_line
 from verify.problem.beam import Beam, check_features, in_plane, with_attachments
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
@@ -93,6 +94,7 @@ class RigidChain:
     in_space: bool = False
     mirrored: bool = False
     theory: Theory = "euler-bernoulli"
+    __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
     def count(self) -> int:

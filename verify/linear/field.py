@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
@@ -42,6 +43,7 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Positions of moments and of devices against rotation, m, whose couples are not in `forces`."""
     conjugate: Callable[[PointLoad], complex] | None = None
     """`displacement`, single frequency; None where it is the deflection or the rotation of the section."""
+    __repr__ = one_line(model="", count="", frequency_hz="Hz", theory="")
 
     @property
     def omega(self) -> float:

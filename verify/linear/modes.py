@@ -7,6 +7,7 @@ import msgspec
 
 from verify.arrays import Array
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.numerics import zeros
 from verify.linear.positions import Numbers, positions_on, reshape_like
 
@@ -42,6 +43,7 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); from the right at a step."""
     method: str = "closed form"
     """Method of the eigenvalues."""
+    __repr__ = one_line(model="", count="", frequencies_hz="Hz")
 
     @classmethod
     def of_shapes(cls, nodes: Array, shapes: Callable[[Array, int], Array], **fields: Any) -> "Modes":

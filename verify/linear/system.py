@@ -14,6 +14,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.factored import FactoredSystem
 
 DENSE = 150
@@ -52,6 +53,8 @@ def _sums(terms: Array) -> Array:
 @dataclass(frozen=True, eq=False)
 class StructuralSystem(FactoredSystem):
     """Modes, harmonic response and buckling of a factored system."""
+
+    __repr__ = one_line(n="unknowns", n_rigid="rigid-body modes", stiffness="")
 
     def rayleigh_quotients(self, vectors: Array) -> Array:
         """Eigenvalues (k,) of vectors (n, k)."""

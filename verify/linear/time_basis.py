@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointLoad, PointMoment
 
@@ -50,6 +51,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     None where all stiffness is lossy: half the loss factor for every mode."""
     turns: Callable[[], Array] | None = None
     """() -> (n, attachments): rotation of `beam.attached`; None where it is the slope of the shapes there."""
+    __repr__ = one_line(model="", count="", omegas="rad/s", method="")
 
     def modal_load(self, load: PointLoad) -> Array:
         """Load of every mode under a force or moment of unit amplitude, (n,)."""

@@ -218,7 +218,7 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
         )
 
 
-class PointLoad(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointLoad(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A harmonic load at a point, amplitude cos(omega t + phase): a `PointForce` or a `PointMoment`.
 
     Raises InputError for a value that is not finite and a negative position. Functions that take a beam and a load

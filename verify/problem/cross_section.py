@@ -16,7 +16,7 @@ ALL_SIZES = {size for sizes in SIZES.values() for size in sizes}
 Metres = Annotated[float, unit("m", gt=0)]
 
 
-class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """Input of a cross-section: shape, sizes and material, or its stiffness and mass. SI."""
 
     shape: Shape | None = None

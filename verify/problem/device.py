@@ -13,7 +13,7 @@ ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
 TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
 
 
-class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """An actuator or absorber on a beam in its steady state: an impedance to the ground, and a force.
 
     It is part of the drive: harmonic fields model it; modes, motion in time and the nonlinear chain do not. Raises

@@ -10,7 +10,7 @@ from verify.problem.supports import check_free
 from verify.validation import check_position, unit, validate
 
 
-class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A body fixed to the beam at a point, a spring from there to the ground, or both.
 
     A subclass has fields and, as fields or properties, those of the four coefficients below that are not 0. Models,

@@ -16,7 +16,7 @@ STEEPNESS = 1e4
 OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}  # fields of one friction law only
 
 
-class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """Unilateral contact of slider and beam: compliant, or hard with restitution. Raises InputError."""
 
     stiffness: Annotated[float, unit("N/m", gt=0)] | None = None
@@ -62,7 +62,7 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         return (self.tangential_stiffness or 0.0) + (self.layer_tangential_stiffness or 0.0) * length
 
 
-class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A rigid foot of a slider with [slider.contact]; its height and pitch are free. Raises InputError."""
 
     length: Annotated[float, unit("m", ge=0)] = 0.0
@@ -98,7 +98,7 @@ class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 ONE_POINT = (Foot(),)
 
 
-class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A point mass on the surface, driven by friction.
 
     Friction by the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or by Coulomb's law with stiction; N = m g +

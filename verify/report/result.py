@@ -13,7 +13,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 from verify.analysis.verdict import COLOURS, Margin, Verdict, verdict_of
-from verify.formatting import unit_over
+from verify.formatting import one_line, unit_over
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -158,6 +158,7 @@ class Result:
     """More values for JSON, in SI units."""
     margins: Sequence[Margin] = ()
     """Sizes of what it leaves out; without any it has no verdict."""
+    __repr__ = one_line(summary="")
 
     @property
     def verdict(self) -> Verdict | None:

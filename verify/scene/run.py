@@ -14,6 +14,7 @@ from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analysis.verdict import Margin, Verdict, verdict_of, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError, raise_all
+from verify.formatting import one_line
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.quantities.waves import FieldOptions, driven_case
 from verify.scene.load import load_scene, study_errors
@@ -72,6 +73,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     margins: tuple[Margin, ...] = ()
     """Linear theory under the drive and under the weight of the slider."""
     seconds: float
+    __repr__ = one_line(scene="", passed="", gates="", results="", seconds="s")
 
     @property
     def failed(self) -> tuple[GateResult, ...]:
