@@ -28,8 +28,8 @@ from verify.exact import closed_forms
 from verify.exact.characteristic import buckling_load, check_stable, count_at, wavenumber_length
 from verify.exact.layout import BeamLayout, Station, layout_of, with_stations
 from verify.exact.transfer import ROTATION, Motion, divide, modal_motion, solve
-from verify.linear.base import BeamModel
-from verify.linear.field import HarmonicField, acting_on, phasor, point_force, wavenumber
+from verify.linear.base import BeamModel, Devices
+from verify.linear.field import HarmonicField, acting_on, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Loads, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
@@ -103,18 +103,12 @@ class ExactModel(BeamModel):
         betas = np.array([wavenumber_length(layout, mode + rigid) for mode in range(1, n_modes + 1)])
         together = n_modes if layout.plain else _TOGETHER
         blocks = [range(first, min(first + together, n_modes + 1)) for first in range(1, n_modes + 1, together)]
-        empty = np.empty(0)
         return Modes(
             model=self.name,
             count=None,
             length=self.beam.length,
             frequencies_hz=self._hertz(betas),
             shapes=lambda x, derivative: np.concatenate([self._shapes(some, x, derivative) for some in blocks]),
-            nodes=empty,
-            points=empty,
-            sampled=lambda: np.empty((n_modes, 0)),
-            curvature_points=empty,
-            curvatures=lambda: np.empty((n_modes, 0)),
             method="closed form" if layout.plain else "counted",
         )
 
@@ -136,12 +130,7 @@ class ExactModel(BeamModel):
     # --- Harmonic fields ---
 
     def harmonic(
-        self,
-        forces: Loads,
-        frequency_hz: Numbers,
-        *,
-        devices: Device | Sequence[Device] = (),
-        modal_damping: float = 0.0,
+        self, forces: Loads, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
     ) -> HarmonicField:
         """The exact steady field under harmonic point forces and moments; see `BeamModel.harmonic`.
 
@@ -154,9 +143,7 @@ class ExactModel(BeamModel):
             )
         return self._field(*self.check_stationed(forces, devices), (), frequency_hz)
 
-    def imposed(
-        self, displacements: Forces, frequency_hz: float, *, devices: Device | Sequence[Device] = ()
-    ) -> HarmonicField:
+    def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The exact steady field under imposed harmonic displacements, amplitudes in m; see `BeamModel.imposed`."""
         drives, stationed = self.check_stationed(displacements, devices, PointForce)
         length = self.beam.length
@@ -301,10 +288,6 @@ class ExactModel(BeamModel):
     def buckling_load(self) -> float:
         """Lowest buckling load in compression, N (Euler). Raises InputError."""
         return buckling_load(self.beam)
-
-    def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of propagating waves in the beam's own section by its theory, 1/m."""
-        return wavenumber(self.beam, frequency_hz, self.theory)
 
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
         """The first `modes` modes (default: 400) and the quasi-static response of the higher modes.

@@ -22,7 +22,7 @@ from verify.validation import unit
 class Pad(Attachment, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A block glued between beam and ground: springs of its modulus, half of its mass moves."""
 
-    kind = "pad"
+    where = "beam.pad"
     width: Annotated[float, unit("m", gt=0)]
     area: Annotated[float, unit("m^2", gt=0)]
     thickness: Annotated[float, unit("m", gt=0)]

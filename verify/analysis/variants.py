@@ -93,13 +93,13 @@ class Rules(_Several, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 def has_wall(beam: Beam) -> bool:
     """Whether a chain has a joint at a wall: an end is clamped, or has a rotational spring or rotary inertia."""
-    ends = [one.position for one in beam.attached if any(one.around.values())]
+    ends = [one.position for one in beam.attached if one.turning]
     return "clamped" in beam.supports or 0.0 in ends or beam.length in ends
 
 
 def attached_within(beam: Beam) -> bool:
     """Whether attachments on rigid links have an effect: an attachment lies between the ends, or rotates."""
-    rotating = any(any(one.around.values()) for one in beam.attached)
+    rotating = any(one.turning for one in beam.attached)
     return rotating or any(0.0 < one.position < beam.length for one in beam.attached)
 
 

@@ -190,7 +190,7 @@ class BeamModel(ABC):
         """(loads, devices) as tuples. Raises InputError for a position off the beam, no effect, and no loads."""
         acting, stationed = loads_on(self.beam, forces, kind), as_tuple("devices", devices, Device)
         for device in stationed:
-            device.check_on(self.beam)
+            device.check_on("device", self.beam.length, self.beam.supports)
         if not acting and not any(device.amplitude for device in stationed):
             raise InputError(
                 "no forces or displacements and no device with an amplitude: give a PointForce, or a device a force"
@@ -198,7 +198,6 @@ class BeamModel(ABC):
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:
-        from verify.linear.registry import MODELS
-
-        able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
-        return InputError(f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose one of {able}")
+        return InputError(
+            f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose analytic, segment or fem, which have all"
+        )

@@ -13,50 +13,39 @@ from verify.validation import check_position, unit, validate
 class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A body fixed to the beam at a point, a spring from there to the ground, or both.
 
-    A subclass has fields and, as fields or properties, those of the four coefficients below that are not 0. Models,
-    engines, fits and drawing read these alone; the name of its field of `Beam` is `kind`. Raises InputError for an
-    invalid value and where all four are 0.
+    A subclass has fields and, as fields or properties, those of the four coefficients below that are not 0, which are
+    all that models, engines, fits and the drawing read; `where` is its name in messages. Raises InputError for an
+    invalid value and where all are 0.
     """
 
-    kind: ClassVar[str]
+    where: ClassVar[str]
+    acting_across: ClassVar[tuple[str, ...]] = ("stiffness", "mass")
+    """Coefficients against deflection."""
+    acting_around: ClassVar[tuple[str, ...]] = ("rotational", "rotary_inertia")
+    """Coefficients against rotation."""
     position: Annotated[float, unit("m", ge=0)]
-    """x of the fixing, m from the left end."""
+    """x, m from the left end."""
+
+    stiffness = property(lambda self: 0.0, doc="Stiffness against deflection, N/m.")
+    rotational = property(lambda self: 0.0, doc="Stiffness against rotation, N m/rad.")
+    mass = property(lambda self: 0.0, doc="Mass that moves with the deflection, kg.")
+    rotary_inertia = property(lambda self: 0.0, doc="Rotary inertia about the fixing, kg m^2.")
 
     def __post_init__(self) -> None:
-        validate(self, f"beam.{self.kind}")
-        if not any((*self.across.values(), *self.around.values())):
+        validate(self, self.where)
+        if not (self.across or self.turning):
             names = " or ".join(name for name in self.__struct_fields__ if name != "position")
-            raise InputError(f"beam.{self.kind} at position = {self.position!r} has no effect: give {names}")
+            raise InputError(f"{self.where} at position = {self.position!r} has no effect: give {names}")
 
     @property
-    def stiffness(self) -> float:
-        """Stiffness against deflection, N/m."""
-        return 0.0
+    def across(self) -> bool:
+        """Whether it acts on the deflection."""
+        return any(getattr(self, name) for name in self.acting_across)
 
     @property
-    def rotational(self) -> float:
-        """Stiffness against rotation, N m/rad."""
-        return 0.0
-
-    @property
-    def mass(self) -> float:
-        """Mass that moves with the deflection, kg."""
-        return 0.0
-
-    @property
-    def rotary_inertia(self) -> float:
-        """Rotary inertia about the fixing, kg m^2."""
-        return 0.0
-
-    @property
-    def across(self) -> dict[str, float]:
-        """Coefficients against deflection by name."""
-        return {"stiffness": self.stiffness, "mass": self.mass}
-
-    @property
-    def around(self) -> dict[str, float]:
-        """Coefficients against rotation by name."""
-        return {"rotational": self.rotational, "rotary_inertia": self.rotary_inertia}
+    def turning(self) -> bool:
+        """Whether it acts on the rotation."""
+        return any(getattr(self, name) for name in self.acting_around)
 
     @property
     def massive(self) -> bool:
@@ -69,15 +58,16 @@ class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         return bool(self.stiffness or self.rotational)
 
     def check_on(self, where: str, length: float, supports: Sequence[str]) -> None:
-        """Raise InputError for a position off the beam, or on a support where a coefficient has no effect."""
+        """Raise InputError for a position off a beam, or on a support where a coefficient has no effect."""
         check_position(f"{where}.position", self.position, length)
-        check_free(where, self.position, length, supports, self.across, self.around)
+        across, turning = ({n: getattr(self, n) for n in names} for names in (self.acting_across, self.acting_around))
+        check_free(where, self.position, length, supports, across, turning)
 
 
 class PointMass(Attachment, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid body fixed to the beam at a point. Raises InputError for an invalid value or without inertia."""
 
-    kind = "mass"
+    where = "beam.mass"
     mass: Annotated[float, unit("kg", ge=0)] = 0.0
     """kg."""
     rotary_inertia: Annotated[float, unit("kg m^2", ge=0)] = 0.0
@@ -87,7 +77,7 @@ class PointMass(Attachment, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class PointSpring(Attachment, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A spring from the beam to the ground at a point. Raises InputError for an invalid value or no stiffness."""
 
-    kind = "spring"
+    where = "beam.spring"
     stiffness: Annotated[float, unit("N/m", ge=0)] = 0.0
     """Stiffness against deflection, N/m."""
     rotational: Annotated[float, unit("N m/rad", ge=0)] = 0.0

@@ -181,13 +181,6 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         if contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
             raise InputError("slider.foot: hard contact has one point, give slider.contact.stiffness or points = 1")
 
-    def check_bilateral(self) -> None:
-        """Raise InputError for a slider that may lose contact."""
-        if self.contact is not None:
-            raise InputError(
-                "slider.contact: this result is for a slider that never loses contact, leave it out or use [motor]"
-            )
-
     @property
     def feet(self) -> tuple[Foot, ...]:
         """The feet; by default one of one point."""

@@ -51,7 +51,7 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
         fields = {name: getattr(self, name) for name in Device.__struct_fields__}
         fields["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
         device = Device(**fields)
-        device.check_on(beam)
+        device.check_on("device", beam.length, beam.supports)
         return device
 
 
