@@ -187,9 +187,9 @@ class HermiteModel(DiscreteModel):
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
             strains.append((self._rows(x), self._foundation * shares))
-        for one in beam.attached:
-            at = np.array([one.position / self.unit])
-            for value, rotation in ((one.stiffness * self.unit**2, False), (one.rotational, True)):
+        for attachment in beam.attached:
+            at = np.array([attachment.position / self.unit])
+            for value, rotation in ((attachment.stiffness * self.unit**2, False), (attachment.rotational, True)):
                 if value:
                     most = RIGID * self.mesh.stiffnesses.max()
                     strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))

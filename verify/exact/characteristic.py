@@ -160,13 +160,13 @@ def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
     u0, u1, u2, u3, u4 = u
     one, both, g2, g3, h4, tip, guide, lift, turn, bend = by
     m, guide = p + c * q, q * guide
-    rest, ahead, back, corner = both + 2.0 * q * h4, g2 - m * h4, q * (g2 + m * h4), 2.0 * (c * g2 + h4)
+    outer, ahead, back, corner = both + 2.0 * q * h4, g2 - m * h4, q * (g2 + m * h4), 2.0 * (c * g2 + h4)
     return (
-        u0 * rest + u1 * tip + 2.0 * u2 * ahead + u3 * turn + u4 * corner,
+        u0 * outer + u1 * tip + 2.0 * u2 * ahead + u3 * turn + u4 * corner,
         u0 * bend + u1 * both + 2.0 * u2 * lift + 2.0 * u3 * (1.0 + p * c) * g2 + u4 * turn,
         u3 * lift + u4 * ahead - u0 * back - 2.0 * u1 * q * g3 + u2 * (one - 4.0 * q * h4),
         u3 * both + u4 * tip - u0 * guide - 2.0 * u1 * q * g2 - 4.0 * u2 * q * g3,
-        2.0 * u0 * q * (q * h4 - p * g2) - u1 * guide - 2.0 * u2 * back + u3 * bend + u4 * rest,
+        2.0 * u0 * q * (q * h4 - p * g2) - u1 * guide - 2.0 * u2 * back + u3 * bend + u4 * outer,
     )
 
 

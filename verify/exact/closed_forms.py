@@ -77,7 +77,7 @@ def unit_shapes(supports: Sequence[str], betas: Array) -> Callable[[Array, int],
         return np.asarray(oscillating + left * np.exp(-betas[:, None] * xi) + right * np.exp(betas[:, None] * (xi - 1)))
 
     unit, ends = np.eye(4)[:, None].repeat(len(betas), axis=1), np.array([0.0, 1.0])
-    values = np.array([[waves(one, ends, d) for one in unit] for d in range(4)])  # (derivative, wave, n, end)
+    values = np.array([[waves(wave, ends, d) for wave in unit] for d in range(4)])  # (derivative, wave, n, end)
     conditions = [values[d, :, :, end] for end, support in enumerate(supports) for d in HELD[support]]
     factors = np.linalg.svd(np.array(conditions).transpose(2, 0, 1))[2][:, -1]  # the null vectors
     start, end = np.einsum("dwne,nw->edn", values, factors)
@@ -113,8 +113,8 @@ def rod_frequency_hz(beam: Beam, mode: int, motion: str, fixed: tuple[bool, bool
     InputError for a section that is not defined by shape, sizes and material.
     """
     check_uniform(beam)
-    own = beam.base_section
-    speed = sqrt(own.axial_stiffness / own.mass_per_length)
+    section = beam.base_section
+    speed = sqrt(section.axial_stiffness / section.mass_per_length)
     if motion == "torsion":
         ratio = 1.0
         if beam.width and beam.thickness:

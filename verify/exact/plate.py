@@ -96,7 +96,7 @@ def ritz_error(supports: Sequence[str], aspect: float, poissons_ratio: float, mo
     # across, even Legendre polynomials and two derivatives in orthonormal ones, (2 terms, terms)
     norm = np.sqrt(np.arange(2 * terms_across) + 0.5)
     derived = [legendre.legder(np.diag(norm)[:, ::2], order) for order in range(3)]
-    across = [sparse.csc_array(np.pad(own, ((0, len(norm) - len(own)), (0, 0))) / norm[:, None]) for own in derived]
+    across = [sparse.csc_array(np.pad(d, ((0, len(norm) - len(d)), (0, 0))) / norm[:, None]) for d in derived]
     w, w_xx, w_yy, w_xy = (
         aspect**j * sparse.kron(along[i], across[j], "csc") for i, j in ((0, 0), (2, 0), (0, 2), (1, 1))
     )

@@ -221,8 +221,8 @@ class DiscreteModel(BeamModel):
         frequencies = frequencies_on(self.beam, frequency_hz)
         if stationed and np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: give one frequency with devices")
-        own, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
-        loads, omega2 = self._loads(acting, own), (omegas / self._omega_unit) ** 2
+        blocked, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
+        loads, omega2 = self._loads(acting, blocked), (omegas / self._omega_unit) ** 2
         impedances = self._impedances(stationed, float(omegas[0]))
         loss = self._shared_loss(omegas) if modal_damping or (self._many(omegas) and not impedances) else None
         if modal_damping and (loss is None or impedances):
@@ -243,7 +243,7 @@ class DiscreteModel(BeamModel):
                     raise self._at_resonance(float(frequencies[i])) from None
                 parts[:, i] = steady[0][:, 0], steady[1][:, 0]
         reactions = self._reactions(impedances, parts[:, 0].sum(axis=0))
-        return self._field(parts, frequency_hz, (*acting, *own, *reactions), stationed)
+        return self._field(parts, frequency_hz, (*acting, *blocked, *reactions), stationed)
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The steady field under imposed harmonic displacements, which are constraint rows of the system.
@@ -256,7 +256,7 @@ class DiscreteModel(BeamModel):
         if np.ndim(frequency_hz):
             raise InputError("frequency_hz has several values: give one frequency with imposed displacements")
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
-        own = tuple(device.own_force for device in stationed if device.amplitude)
+        blocked = tuple(device.own_force for device in stationed if device.amplitude)
         places, p = np.array([drive.position for drive in drives]), len(drives)
         rows = self.load_rows(places)
         if np.linalg.matrix_rank(rows.toarray()) < p:
@@ -267,7 +267,7 @@ class DiscreteModel(BeamModel):
         impedances = self._impedances(stationed, omega)
         try:
             bent, moved, forces = self.stable_system.steady(
-                np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), own)]),
+                np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), blocked)]),
                 (omega / self._omega_unit) ** 2,
                 self.lossy_stiffness(omega),
                 [each[1:] for each in impedances],
@@ -282,7 +282,7 @@ class DiscreteModel(BeamModel):
         holding = [point_force(at, force * scale) for at, force in zip(places.tolist(), forces, strict=True)]
         reactions = self._reactions(impedances, bent + moved)
         return self._field(
-            np.stack([bent, moved])[:, None], float(frequency_hz), (*holding, *own, *reactions), stationed
+            np.stack([bent, moved])[:, None], float(frequency_hz), (*holding, *blocked, *reactions), stationed
         )
 
     def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
@@ -305,13 +305,13 @@ class DiscreteModel(BeamModel):
             result[i] = self.line(response)(read, 0)
         return result
 
-    def _loads(self, acting: Sequence[PointLoad], own: Sequence[PointForce]) -> ComplexArray:
+    def _loads(self, acting: Sequence[PointLoad], blocked: Sequence[PointForce]) -> ComplexArray:
         """Dimensionless loads of forces, moments and active devices, (n, 1)."""
         loads = np.zeros((self.n_unknowns, 1), dtype=complex)
         moments = [load for load in acting if isinstance(load, PointMoment)]
         forces = [load for load in acting if not isinstance(load, PointMoment)]
         turning = partial(self.load_rows, rotation=True)
-        each = ((self.load_rows, forces, 1.0), (turning, moments, self.unit), (self.device_rows, own, 1.0))
+        each = ((self.load_rows, forces, 1.0), (turning, moments, self.unit), (self.device_rows, blocked, 1.0))
         for rows, some, lever in each:
             if some:
                 weights = rows(np.array([load.position for load in some])).T
@@ -377,7 +377,7 @@ class DiscreteModel(BeamModel):
 
         Rigid-body motions have no curvature; that of their rounded sum with bending is rounding at low frequency.
         """
-        one, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
+        single, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
 
         def joined(lines: Sequence[Any], shift: int) -> Callable[[Array, int], Any]:
             checked = {0}
@@ -397,7 +397,7 @@ class DiscreteModel(BeamModel):
                         )
                     checked.add(order)
                 values = both(lines, x, derivative, order)
-                return values[0] if one else values
+                return values[0] if single else values
 
             return read
 
@@ -412,7 +412,7 @@ class DiscreteModel(BeamModel):
             model=self.name,
             count=self.count,
             beam=self.beam,
-            frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
+            frequency_hz=float(frequency_hz) if single else as_vector("frequency_hz", frequency_hz),
             shapes=joined(deflections, 0),
             theory=self.theory,
             edges=self.edges,

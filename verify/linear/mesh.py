@@ -77,12 +77,12 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     )
 
 
-def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
+def _ratios(base: Piece, pieces: tuple[Piece, ...]) -> Array:
     """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
 
     Without a shape E is 1, I is EI, and areas are NaN.
     """
-    every = (own, *pieces)
+    every = (base, *pieces)
     if any(p.youngs_modulus is None for p in every):
         table = np.array([(1.0, p.bending_stiffness, p.mass_per_length, np.nan) for p in every])
     else:

@@ -138,7 +138,7 @@ class StructuralSystem(FactoredSystem):
         # 1 / (omega^2 - shift) is negative below the shift
         sides = [(below, "SA"), (k - below, "LA")] if below else [(k, "LM")]
         try:
-            vectors = np.hstack([eigsh(inverse, one, which=end, **sought)[1] for one, end in sides if one > 0])
+            vectors = np.hstack([eigsh(inverse, number, which=end, **sought)[1] for number, end in sides if number > 0])
         except ArpackNoConvergence:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: support the beam or lower count"
@@ -265,26 +265,26 @@ class StructuralSystem(FactoredSystem):
             raise np.linalg.LinAlgError(0.0) from None
 
         def solve(load: Any, displacements: Any = None, most: float = LOST) -> Any:
-            still = np.zeros((0, load.shape[1])) if displacements is None else displacements
+            held = np.zeros((0, load.shape[1])) if displacements is None else displacements
 
-            def step(load: Any, strained: Any, still: Any) -> list[Any]:
+            def step(load: Any, strained: Any, held: Any) -> list[Any]:
                 right = np.concatenate(
-                    [np.zeros((m, load.shape[1])), (load - strained)[free], rigid.T @ load, small * still]
+                    [np.zeros((m, load.shape[1])), (load - strained)[free], rigid.T @ load, small * held]
                 )
                 y, bent = factor.solve(right.astype(d.dtype))[m:], np.zeros(load.shape, dtype=d.dtype)
                 bent[free] = y[:split]
                 return [bent, rigid @ y[split:n], small * y[n:]]
 
-            bent, moved, forces = step(load, 0.0, still)
+            bent, moved, forces = step(load, 0.0, held)
             lost = np.inf
             for _ in range(REFINED):
                 whole = bent + moved
-                rest = load + omega2 * (self.mass @ whole)
+                residual = load + omega2 * (self.mass @ whole)
                 for row, z in devices:
-                    rest = rest - z * (row.T @ (row @ whole))
+                    residual = residual - z * (row.T @ (row @ whole))
                 if rows is not None:
-                    rest, still = rest - rows.T @ forces, displacements - rows @ whole
-                more = step(rest, self.transposed @ (d[:, None] * self.strain(bent)), still)
+                    residual, held = residual - rows.T @ forces, displacements - rows @ whole
+                more = step(residual, self.transposed @ (d[:, None] * self.strain(bent)), held)
                 bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
                 # a correction is what the factors lose; the next is as much smaller
                 sizes = [

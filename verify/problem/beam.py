@@ -113,7 +113,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         """The mirror image of the beam."""
         left, right = self.supports
         turned = {
-            kind: tuple(replace(one, position=self.length - one.position) for one in reversed(getattr(self, kind)))
+            kind: tuple(replace(a, position=self.length - a.position) for a in reversed(getattr(self, kind)))
             for kind in attachment_kinds(self)
         }
         return replace(self, supports=(right, left), section=self.section[::-1], **turned)

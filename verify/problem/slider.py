@@ -35,13 +35,14 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def __post_init__(self) -> None:
         validate(self, "slider.contact")
         for name in ("stiffness", "tangential_stiffness"):
-            one, other = getattr(self, name), getattr(self, f"layer_{name}")
-            if one is not None and other is not None:
-                raise InputError(f"slider.contact.{name} = {one!r} and layer_{name} = {other!r}: give one")
+            of_foot, of_layer = getattr(self, name), getattr(self, f"layer_{name}")
+            if of_foot is not None and of_layer is not None:
+                raise InputError(f"slider.contact.{name} = {of_foot!r} and layer_{name} = {of_layer!r}: give one")
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
             if self.hard and (value := getattr(self, name)):
-                one = f"slider.contact.{name} = {value!r}"
-                raise InputError(f"{one} is for compliant contact: give slider.contact.stiffness too")
+                raise InputError(
+                    f"slider.contact.{name} = {value!r} is for compliant contact: give slider.contact.stiffness too"
+                )
         if self.restitution and not self.hard:
             raise InputError(
                 f"slider.contact.restitution = {self.restitution!r} is for hard contact: compliant contact has "

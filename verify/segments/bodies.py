@@ -36,9 +36,9 @@ class Attached:
         mass, stiffness = self.beam.mass_per_length * self.unit, self.beam.bending_stiffness / self.unit**3
         square, bodies = self.unit**2, dict[float, Body]()
         units, ends = (mass, mass * square, stiffness, stiffness * square), {0.0: 0, self.beam.length: 1}
-        for one in self.beam.attached:
-            body = bodies.get(at := one.position, Body(at, ends.get(at) if self.rule != "lever" else None))
-            values = (one.mass, one.rotary_inertia, one.stiffness, one.rotational)
+        for attachment in self.beam.attached:
+            body = bodies.get(at := attachment.position, Body(at, ends.get(at) if self.rule != "lever" else None))
+            values = (attachment.mass, attachment.rotary_inertia, attachment.stiffness, attachment.rotational)
             sums = (a + value / size for a, value, size in zip(body[2:], values, units, strict=True))
             bodies[at] = Body(*body[:2], *sums)
         return tuple(bodies.values())
@@ -77,8 +77,8 @@ class Attached:
     def deflections(self, weights: Any, motions: Motions, compliances: Array) -> Any:
         """Deflections of the bodies including slip (compliances `compliances`, (bodies,)), sparse (bodies, n)."""
         slipping = np.flatnonzero((compliances > 0.0) & self.massive)
-        own = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
-        return weights @ motions.positions + own
+        slip = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
+        return weights @ motions.positions + slip
 
     def energies(self, deflections: Any, rotations: Any, motions: Motions, compliances: Array) -> tuple[list[Any], Any]:
         """(strain rows over (link rotations, unknowns) with stiffnesses, rows R with R^T R the mass of the bodies).

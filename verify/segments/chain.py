@@ -83,8 +83,8 @@ def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array,
     The kinetic energy of a link is half of m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2.
     """
     spin = inertias / lengths**2
-    own, shared = masses / 4.0 + spin, masses / 4.0 - spin
-    return np.append(own, 0.0) + np.append(0.0, own), shared
+    diagonal, shared = masses / 4.0 + spin, masses / 4.0 - spin
+    return np.append(diagonal, 0.0) + np.append(0.0, diagonal), shared
 
 
 def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
@@ -180,10 +180,10 @@ class Motions:
         from scipy.sparse import block_array, vstack
 
         n, lengths, shares = self.chain.n_segments, self.chain.lengths, self._shares
-        own = banded((self.n, self.n), 0, 1.0)
+        identity = banded((self.n, self.n), 0, 1.0)
         slips = -banded((n, n + 1), 0, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
-        scale = block_array([[banded((n, n), 0, 1.0 / lengths), slips], [None, own]], format="csr")
-        return vstack([banded((n, n + 1), 0, -1.0, 1.0) @ self.positions, own], format="csr"), scale
+        scale = block_array([[banded((n, n), 0, 1.0 / lengths), slips], [None, identity]], format="csr")
+        return vstack([banded((n, n + 1), 0, -1.0, 1.0) @ self.positions, identity], format="csr"), scale
 
     @property
     def _shares(self) -> Array:

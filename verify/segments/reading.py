@@ -40,8 +40,8 @@ def spline(chain: Chain, values: Any, *, slipping: bool = False) -> Any:
 
     ends = ["clamped" if wall else "natural" for wall in chain.walls]
     for end, (support, elastic) in enumerate(zip(chain.supports, chain.elastic, strict=True)):
-        known = support == "guided" or (support == "pinned" and not elastic)
-        if (any(chain.elastic) or slipping) and not known:
+        by_symmetry = support == "guided" or (support == "pinned" and not elastic)
+        if (any(chain.elastic) or slipping) and not by_symmetry:
             ends[end] = "not-a-knot"
     return CubicSpline(chain.nodes, values, axis=1, bc_type=tuple(ends))
 

@@ -58,15 +58,16 @@ def attachment_compliance(chain: Chain, softness: Array, position: float, weight
     return float(softness[nearest] * max(doubled * lacking, _LEAST))
 
 
-def joint_inertias(thick: Array, factors: Array, own: Array, wall: str) -> Array:
+def joint_inertias(thick: Array, factors: Array, fraction: Array, wall: str) -> Array:
     """Rotary inertia rho I l/12 subtracted from that of the links, `thick` (N,), at bending joints 0..N, (N + 1,).
 
-    It corresponds to the correction T l/12 of a tensioned joint. `factors` are the wall factors, `own` the fraction of
+    It corresponds to the correction T l/12 of a tensioned joint. `factors` are the wall factors, `fraction` the part of
     a joint's angle that is in the beam and not in a spring behind the end.
     """
     inertias, weights = _harmonic_means(thick) / 12.0, factors.copy()
     weights[[0, -1]] += tension_excess(wall) * ~np.isin(factors[[0, -1]], (0.5, np.inf))
-    return np.divide(inertias * weights * own**2, factors**2, out=np.zeros(len(inertias)), where=np.isfinite(factors))
+    weights *= fraction**2
+    return np.divide(inertias * weights, factors**2, out=np.zeros(len(inertias)), where=np.isfinite(factors))
 
 
 def slip_masses(chain: Chain, slips: Array) -> Array:
@@ -105,12 +106,12 @@ def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: A
 
 
 def section_rotation(
-    motions: Motions, factors: Array, own: Array, unknowns: Any, *, corrected: bool
+    motions: Motions, factors: Array, fraction: Array, unknowns: Any, *, corrected: bool
 ) -> Callable[[Array, int], Any]:
     """Section rotation psi of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
 
     A C2 spline through the links' middles and the ends. A link's rotation is the mean of psi over its length,
-    psi = theta + l^2 psi''/24 at its middle, plus the effect of wall corrections. `own` (N + 1,) is the fraction of a
+    psi = theta + l^2 psi''/24 at its middle, plus the effect of wall corrections. `fraction` (N + 1,) is the part of a
     joint's angle that is in the beam and not in a spring behind the end.
     """
     from scipy.interpolate import CubicSpline
@@ -120,9 +121,9 @@ def section_rotation(
     lengths = chain.lengths[:, None]
     jointed = [wall or elastic for wall, elastic in zip(chain.walls, chain.elastic, strict=True)]
     # rotation behind the end joint: of a body, or less the angle of the spring
-    ends = motions.end_rotations @ unknowns + ([[1.0], [-1.0]] * angles[[0, -1]]) * (1.0 - own[[0, -1], None])
+    ends = motions.end_rotations @ unknowns + ([[1.0], [-1.0]] * angles[[0, -1]]) * (1.0 - fraction[[0, -1], None])
     if corrected:
-        plain = (angles * own[:, None] / factors[:, None]) / chain.spans[:, None]
+        plain = (angles * fraction[:, None] / factors[:, None]) / chain.spans[:, None]
         off = np.cumsum((angles * (1.0 - 1.0 / factors[:, None]))[1:-1], axis=0)
         off = np.concatenate([np.zeros_like(off[:1]), off])
         links = links + off[len(off) // 2] - off + lengths / 24.0 * np.diff(plain, axis=0)
@@ -134,6 +135,6 @@ def section_rotation(
     nodes = chain.nodes
     x = np.concatenate([nodes[:1], 0.5 * (nodes[1:] + nodes[:-1]), nodes[-1:]])
     values = np.concatenate([ends[:1], links, ends[1:]]) / chain.unit
-    kinds = tuple("not-a-knot" if there else "clamped" for there in jointed)
+    kinds = tuple("not-a-knot" if joint else "clamped" for joint in jointed)
     line = CubicSpline(x, values.T, axis=1, bc_type=kinds)
     return lambda at, derivative: line(np.clip(at, nodes[0], nodes[-1]), derivative)
