@@ -141,11 +141,11 @@ class ExactModel(BeamModel):
                 f"modal_damping = {modal_damping!r} is for discrete models: give the beam loss_factor = "
                 f"{2.0 * modal_damping!r} instead"
             )
-        return self._field(*self.check_stationed(forces, devices), (), frequency_hz)
+        return self._field(*self.check_stationed(forces, devices, frequency_hz), (), frequency_hz)
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The exact steady field under imposed harmonic displacements, amplitudes in m; see `BeamModel.imposed`."""
-        drives, stationed = self.check_stationed(displacements, devices, PointForce)
+        drives, stationed = self.check_stationed(displacements, devices, frequency_hz, PointForce)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
         fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if FIXED[end].deflection]
@@ -166,8 +166,6 @@ class ExactModel(BeamModel):
     ) -> HarmonicField:
         """The field under loads (N, N m) and imposed displacements (`drives`, m), with devices."""
         beam, frequencies, single = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
-        if (devices or drives) and not single:
-            raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
         self._check_resonance(frequencies, drives, devices)

@@ -10,10 +10,9 @@ from math import atan, exp, pi, sqrt
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError
 from verify.exact.layout import HELD
 from verify.exact.torsion import torsion_constant
-from verify.problem.beam import Beam, features
+from verify.problem.beam import Beam, check_features
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
 
@@ -42,11 +41,7 @@ def check_mode(mode: int) -> None:
 
 def check_uniform(beam: Beam) -> None:
     """Raise InputError for a stepped beam and for attachments."""
-    if not beam.uniform:
-        raise InputError(
-            f"beam.{features(beam)[0]}: a beam with it has no closed form, leave it out or use the analytic, fem or "
-            "segment model"
-        )
+    check_features(beam, "a closed form", remedy="use the analytic, fem or segment model")
 
 
 def wavenumber_length(supports: Sequence[str], mode: int) -> float:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
-from verify.problem.beam import Beam, features
+from verify.problem.beam import Beam, check_features
 from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ def plate_error(beam: Beam, mode: int) -> float:
     upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError unless the beam is a uniform rectangular
     strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
     """
-    if not beam.uniform:
-        raise InputError(f"beam.{features(beam)[0]}: plate theory does not model it, leave it out")
+    check_features(beam, "plate theory")
     if beam.width is None or beam.thickness is None:
         raise InputError("beam.width is missing: plate theory needs a rectangle's width and thickness")
     if beam.width < FLATNESS * beam.thickness:

@@ -213,14 +213,12 @@ class DiscreteModel(BeamModel):
 
         Many frequencies: superposition of all modes, unless damping couples them.
         """
-        acting, stationed = self.check_stationed(forces, devices)
+        acting, stationed = self.check_stationed(forces, devices, frequency_hz)
         if (cut := self._cut_for((*acting, *stationed))) is not self:
             field = cut.harmonic(acting, frequency_hz, devices=stationed, modal_damping=modal_damping)
             return structs.replace(field, beam=self.beam)
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         frequencies = frequencies_on(self.beam, frequency_hz)
-        if stationed and np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: give one frequency with devices")
         blocked, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
         loads, omega2 = self._loads(acting, blocked), (omegas / self._omega_unit) ** 2
         impedances = self._impedances(stationed, float(omegas[0]))
@@ -250,11 +248,9 @@ class DiscreteModel(BeamModel):
 
         Deflections of a chain have other weights than forces: the constraints are scaled to the deflections.
         """
-        drives, stationed = self.check_stationed(displacements, devices, PointForce)
+        drives, stationed = self.check_stationed(displacements, devices, frequency_hz, PointForce)
         if (cut := self._cut_for(stationed)) is not self:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
-        if np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: give one frequency with imposed displacements")
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
         blocked = tuple(device.own_force for device in stationed if device.amplitude)
         places, p = np.array([drive.position for drive in drives]), len(drives)

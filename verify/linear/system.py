@@ -8,7 +8,7 @@ augmented matrix (`factored`).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -33,6 +33,10 @@ FEW = 4
 """Largest number of frequencies solved one by one: all modes cost more than a few factorisations."""
 SUPERPOSED = 600
 """Largest number of unknowns for superposition of all modes at many frequencies."""
+
+
+Response: TypeAlias = tuple[Any, Any, Any]
+"""Elastic and rigid-body part (n, k) of a response, real or complex, and the forces (p, k) of constraints."""
 
 
 def uses_dense(n: int, k: int) -> bool:
@@ -229,8 +233,8 @@ class StructuralSystem(FactoredSystem):
             return np.arange(self.n), np.zeros((self.n, 0))
         return np.delete(np.arange(self.n), self._grounded()), self.rigid
 
-    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Any]:
-        """Elastic and rigid-body part (n, k), forces (p, k) of K + devices - omega^2 M under p constraints `rows`.
+    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Response]:
+        """Elastic and rigid-body part (n, k), forces (p, k) of p constraints `rows`, of K + devices - omega^2 M.
 
         Iterative refinement: the factors lose soft supports beside bending, factored strains do not. Raises LinAlgError
         where the matrix is singular, and where the last correction of a response exceeds `LOST`.
@@ -264,7 +268,7 @@ class StructuralSystem(FactoredSystem):
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
 
-        def solve(load: Any, displacements: Any = None, most: float = LOST) -> Any:
+        def solve(load: Any, displacements: Any = None, most: float = LOST) -> Response:
             held = np.zeros((0, load.shape[1])) if displacements is None else displacements
 
             def step(load: Any, strained: Any, held: Any) -> list[Any]:
@@ -296,7 +300,7 @@ class StructuralSystem(FactoredSystem):
                     break
             if not lost <= most:
                 raise np.linalg.LinAlgError(lost)
-            return bent, moved, forces
+            return bent, moved, -forces
 
         return solve
 
@@ -308,7 +312,7 @@ class StructuralSystem(FactoredSystem):
         devices: Sequence[tuple[Any, complex]] = (),
         rows: Any = None,
         displacements: Any = None,
-    ) -> tuple[Any, Any, Any]:
+    ) -> Response:
         """The steady response to loads (n, k), (K + devices - omega^2 M) v = load, in an elastic and a rigid-body part.
 
         Both are (n, k); the third result are the forces (p, k) of constraints rows (p, n) @ v = displacements (p, k).
@@ -318,9 +322,7 @@ class StructuralSystem(FactoredSystem):
         """
         d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
         if np.iscomplexobj(d) or any(complex(z).imag for _, z in devices):
-            solve = self._solver(omega2, np.asarray(d, dtype=complex), devices, rows)
-            bent, moved, forces = solve(loads, displacements)
-            return bent, moved, -forces
+            return self._solver(omega2, np.asarray(d, dtype=complex), devices, rows)(loads, displacements)
         solve = self._solver(omega2, d, [(row, complex(z).real) for row, z in devices], rows)
         nothing = None if rows is None else np.zeros((rows.shape[0], 1))
 
@@ -331,12 +333,11 @@ class StructuralSystem(FactoredSystem):
 
         self._check_resonance(respond, respond(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
         if not np.iscomplexobj(loads):
-            bent, moved, forces = solve(loads, displacements)
-            return bent, moved, -forces
+            return solve(loads, displacements)
         both = None if rows is None else np.hstack([displacements, np.zeros(displacements.shape)])
         parts = solve(np.hstack([loads.real, loads.imag]), both)
         bent, moved, forces = (part[:, :k] + 1j * part[:, k:] for part in parts)
-        return bent, moved, -forces
+        return bent, moved, forces
 
     def harmonic(
         self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()

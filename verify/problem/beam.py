@@ -66,7 +66,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
                     f"beam: its bending stiffness is {stiffness:.3g} N m^2, its mass per length {mass:.3g} kg/m, its "
                     f"length {self.length:.3g} m: give values between 1e-50 and 1e50, check their units"
                 )
-        for kind in attachment_kinds(self):
+        for kind in attachment_kinds(type(self)):
             for i, attachment in enumerate(getattr(self, kind)):
                 attachment.check_on(f"beam.{kind}[{i}]", self.length, self.supports)
 
@@ -97,7 +97,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     @cached_property
     def attached(self) -> tuple[Attachment, ...]:
         """All attachments: masses, then springs."""
-        return tuple(attachment for kind in attachment_kinds(self) for attachment in getattr(self, kind))
+        return tuple(attachment for kind in attachment_kinds(type(self)) for attachment in getattr(self, kind))
 
     @property
     def uniform(self) -> bool:
@@ -114,7 +114,7 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         left, right = self.supports
         turned = {
             kind: tuple(replace(a, position=self.length - a.position) for a in reversed(getattr(self, kind)))
-            for kind in attachment_kinds(self)
+            for kind in attachment_kinds(type(self))
         }
         return replace(self, supports=(right, left), section=self.section[::-1], **turned)
 
@@ -135,20 +135,16 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return sqrt(self.bending_stiffness / self.mass_per_length)
 
 
-def attachment_kinds(beam: Beam) -> tuple[str, ...]:
-    """Names of the fields of a beam that are lists of attachments."""
-    return _attachment_kinds(type(beam))
-
-
 @cache
-def _attachment_kinds(kind: type[Beam]) -> tuple[str, ...]:
-    fields = msgspec.structs.fields(kind)
+def attachment_kinds(beam: type[Beam]) -> tuple[str, ...]:
+    """Names of the fields of a type of beam that are lists of attachments."""
+    fields = msgspec.structs.fields(beam)
     return tuple(field.name for field in fields if issubclass(entry_of(field.type) or object, Attachment))
 
 
 def features(beam: Beam) -> tuple[str, ...]:
     """Names of the fields beyond a uniform beam on two supports: section, attachments, tension, foundation."""
-    names = (*attachment_kinds(beam), "tension", "foundation")
+    names = (*attachment_kinds(type(beam)), "tension", "foundation")
     return ("section",) * is_stepped(beam) + tuple(name for name in names if getattr(beam, name))
 
 
@@ -168,12 +164,10 @@ def check_features(beam: Beam, model: str, allowed: tuple[str, ...] = (), remedy
     "attached" allows every attachment, "bodies" those without stiffness.
     """
     for name in features(beam):
-        if name in attachment_kinds(beam):
-            elastic = any(attachment.elastic for attachment in getattr(beam, name))
-            modelled = "attached" in allowed or ("bodies" in allowed and not elastic)
-        else:
-            modelled = name in allowed
-        if not modelled:
+        group = ("attached", "bodies") if name in attachment_kinds(type(beam)) else (name,)
+        if "bodies" in group and any(attachment.elastic for attachment in getattr(beam, name)):
+            group = ("attached",)
+        if not set(group) & set(allowed):
             raise InputError(f"beam.{name}: {model} does not model it, leave it out or {remedy}")
 
 
@@ -193,7 +187,7 @@ def rigid_lines(beam: Beam) -> tuple[tuple[float, float], ...]:
 
 def with_attachments(beam: Beam, mass: tuple[PointMass, ...] = (), spring: tuple[PointSpring, ...] = ()) -> Beam:
     """The beam with these attachments alone."""
-    return replace(beam, **dict.fromkeys(attachment_kinds(beam), ()) | {"mass": mass, "spring": spring})
+    return replace(beam, **dict.fromkeys(attachment_kinds(type(beam)), ()) | {"mass": mass, "spring": spring})
 
 
 def in_plane(beam: Beam, axis: str) -> Beam:

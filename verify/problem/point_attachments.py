@@ -34,8 +34,10 @@ class Attachment(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     def __post_init__(self) -> None:
         validate(self, self.where)
         if not (self.across or self.turning):
-            names = " or ".join(name for name in self.__struct_fields__ if name != "position")
-            raise InputError(f"{self.where} at position = {self.position!r} has no effect: give {names}")
+            names = [n for n in (*self.acting_across, *self.acting_around) if n in self.__struct_fields__]
+            raise InputError(
+                f"{self.where} at position = {self.position!r} has no effect: give one of {', '.join(names)}"
+            )
 
     @property
     def across(self) -> bool:

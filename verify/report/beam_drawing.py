@@ -6,7 +6,7 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 from typing import Any
 
 from verify.formatting import with_unit
-from verify.problem.beam import attachment_kinds
+from verify.problem.beam import Beam, attachment_kinds
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 from verify.settings import DRIVE_UNITS
@@ -28,10 +28,10 @@ def beam_figure(scene: Any) -> Figure:
     from matplotlib.figure import Figure as MatplotlibFigure
 
     sketch = _Sketch(scene, MatplotlibFigure().subplots())
-    beam = scene.beam
+    beam: Beam = scene.beam
     kind = scene.drive.kind if scene.drive is not None else "force"
     what = "actuators" if kind in ELECTRICAL else f"{kind}s"
-    attached = {f"{name}{'e' * name.endswith('s')}s": getattr(beam, name) for name in attachment_kinds(beam)}
+    attached = {f"{name}{'e' * name.endswith('s')}s": getattr(beam, name) for name in attachment_kinds(type(beam))}
     counts = {"sections": beam.section, **attached, what: scene.forces}
     counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
