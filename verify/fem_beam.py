@@ -10,7 +10,6 @@ inertia, and the linear curvature of a cubic cannot represent a jump inside an e
 of equal elements are integers, exact at any N.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import pi, sqrt
@@ -19,7 +18,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Curve, Indices, Numeric, Sparse
 from verify.linear.discrete import DiscreteModel
 from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
@@ -195,7 +194,7 @@ class HermiteModel(DiscreteModel):
                     strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
         return strains
 
-    def _mass(self) -> Any:
+    def _mass(self) -> Sparse:
         """Mass matrix M of the elements over the unknowns by scikit-fem, with rotary inertia."""
         from scipy.sparse import csc_array
 
@@ -209,7 +208,7 @@ class HermiteModel(DiscreteModel):
         free = (rows >= 0) & (columns >= 0)
         return csc_array((data[free], (rows[free], columns[free])), shape=(self.n_unknowns,) * 2)
 
-    def _bodies(self) -> Any:
+    def _bodies(self) -> Sparse | None:
         """Rows R (r, n) of attached bodies: R^T R is their part of M."""
         from scipy.sparse import vstack
 
@@ -231,7 +230,7 @@ class HermiteModel(DiscreteModel):
             shapes[1 : 2 * len(nodes) : 2, j] = b
         return shapes[self.unknowns >= 0]
 
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with the beam's loss factor on bending and shear, (m,)."""
         stiffness, strains = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
         if not self.beam.loss_factor:
@@ -240,16 +239,16 @@ class HermiteModel(DiscreteModel):
 
     # --- Readings ------------------------------------------------------------------------------------------------
 
-    def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Any:
+    def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Sparse:
         from verify.elements.element import rows
 
         return rows(self.mesh.nodes, x, self.unknowns, derivative, rotation=rotation)
 
-    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Sparse:
         """Shape functions of the unknowns at positions (m), sparse (n_positions, n)."""
         return self._rows(np.asarray(positions) / self.unit, rotation=rotation)
 
-    def _read(self, unknowns: Any, which: int) -> Callable[[Array, int], Any]:
+    def _read(self, unknowns: Numeric, which: int) -> Curve:
         """Deflection (which = 0) or rotation (1) of unknowns (n, k); at a node that of the right element."""
 
         @cache
@@ -262,11 +261,11 @@ class HermiteModel(DiscreteModel):
 
         return lambda x, derivative: np.ascontiguousarray(polynomials()(x, derivative).T)
 
-    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+    def line(self, unknowns: Numeric) -> Curve:
         """Deflection by the cubics of the elements: (x in m, derivative) -> (k, len(x))."""
         return self._read(unknowns, 0)
 
-    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+    def rotation_line(self, unknowns: Numeric) -> Curve | None:
         """Section rotation of Timoshenko elements: (x in m, derivative) -> (k, len(x)); None without shear."""
         return self._read(unknowns, 1) if self.shear else None
 

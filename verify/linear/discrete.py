@@ -5,7 +5,7 @@ dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
 from math import pi, sqrt
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from msgspec import structs
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray, Curve, Numeric, Sparse
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, acting_on, phasor, point_force
@@ -47,26 +47,26 @@ class DiscreteModel(BeamModel):
         """Stiffness and mass, also beyond buckling; a cached property."""
 
     @abstractmethod
-    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Sparse:
         """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
 
         The row of a couple also gives the rotation at a device.
         """
 
-    def device_rows(self, positions: Array) -> Any:
+    def device_rows(self, positions: Array) -> Sparse:
         """Weights of the unknowns for deflection and force of devices at positions (m), sparse (n_positions, n)."""
         return self.load_rows(positions)
 
     @abstractmethod
-    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+    def line(self, unknowns: Numeric) -> Curve:
         """Deflection for unknowns (n, k): (x in m, derivative) -> (k, len(x)), per metre^derivative."""
 
-    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+    def rotation_line(self, unknowns: Numeric) -> Curve | None:
         """Section rotation for unknowns (n, k): (x in m, derivative) -> (k, len(x)); None where it is the slope."""
         return None
 
     @abstractmethod
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with losses of material and dashpots at omega (rad/s), (m,); real without losses."""
 
     @abstractmethod
@@ -375,13 +375,13 @@ class DiscreteModel(BeamModel):
         """
         single, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
 
-        def joined(lines: Sequence[Any], shift: int) -> Callable[[Array, int], Any]:
+        def joined(lines: Sequence[Any], shift: int) -> Curve:
             checked = {0}
 
             def both(lines: Sequence[Any], x: Array, derivative: int, order: int) -> Any:
                 return sum(line(x, derivative) for line in (lines if order < 2 else lines[:1]))
 
-            def read(x: Array, derivative: int) -> Any:
+            def read(x: Array, derivative: int) -> Numeric:
                 if (order := derivative + shift) not in checked:
                     # rounding of deflections over the length of a part, measured as a few units of the last place
                     noise = abs(both(deflections, sampled, 0, order)).max(axis=1) * 8.0 * 2.0**-52 / self.unit**order
@@ -393,7 +393,7 @@ class DiscreteModel(BeamModel):
                         )
                     checked.add(order)
                 values = both(lines, x, derivative, order)
-                return values[0] if single else values
+                return np.asarray(values[0] if single else values)
 
             return read
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from verify.arrays import Array, BoolArray
+from verify.arrays import Array, BoolArray, Sparse
 from verify.problem.beam import Beam
 from verify.segments.chain import Motions, selection
 
@@ -65,7 +65,7 @@ class Attached:
         """Whether each body has a mass, (bodies,)."""
         return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
 
-    def rotations(self, weights: Any, motions: Motions) -> Any:
+    def rotations(self, weights: Sparse, motions: Motions) -> Sparse:
         """Rotations of the bodies as rows over (link rotations, unknowns), sparse (bodies, N + n)."""
         from scipy.sparse import diags_array, hstack
 
@@ -74,13 +74,15 @@ class Attached:
         ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
         return hstack([diags_array(1.0 - beyond) @ weights, ends @ motions.end_rotations], format="csr")
 
-    def deflections(self, weights: Any, motions: Motions, compliances: Array) -> Any:
+    def deflections(self, weights: Sparse, motions: Motions, compliances: Array) -> Sparse:
         """Deflections of the bodies including slip (compliances `compliances`, (bodies,)), sparse (bodies, n)."""
         slipping = np.flatnonzero((compliances > 0.0) & self.massive)
         slip = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
         return weights @ motions.positions + slip
 
-    def energies(self, deflections: Any, rotations: Any, motions: Motions, compliances: Array) -> tuple[list[Any], Any]:
+    def energies(
+        self, deflections: Sparse, rotations: Sparse, motions: Motions, compliances: Array
+    ) -> tuple[list[Any], Any]:
         """(strain rows over (link rotations, unknowns) with stiffnesses, rows R with R^T R the mass of the bodies).
 
         A massless spring is in series with its slip, at an end with the joint, so that no unknown is massless.

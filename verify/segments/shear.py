@@ -5,12 +5,11 @@ compliances are of M^2/EI. The links' rotary inertia rho I l theta^2 acts like a
 unless "tensioned" joints subtract inertia where they bend and slip: order 4 (`docs/theory.md`, "Finite segments").
 """
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Curve, Numeric
 from verify.segments.bodies import Body
 from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
@@ -86,14 +85,15 @@ def _harmonic_means(links: Array) -> Array:
     return np.concatenate([links[:1], inner, links[-1:]])
 
 
-def shear_change(motions: Motions, softness: Array, unknowns: Any) -> Any:
+def shear_change(motions: Motions, softness: Array, unknowns: Numeric) -> Numeric:
     """Derivative gamma' of the shear angle at joints 0..N, (k, N + 1), per unit length.
 
     From the shear force; independent of wall factors.
     """
     chain, slipping, angles = motions.chain, motions.sliding, motions.joint_slips @ unknowns
     angles[slipping] *= (softness[slipping] / motions.slips[slipping])[:, None]
-    return np.gradient(angles / chain.spans[:, None], chain.nodes / chain.unit, axis=0, edge_order=2).T
+    change = np.gradient(angles / chain.spans[:, None], chain.nodes / chain.unit, axis=0, edge_order=2)
+    return np.asarray(change.T)
 
 
 def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: Array, values: Array) -> Array:
@@ -105,9 +105,7 @@ def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: A
     return np.asarray(force * joints / right_of(shears))
 
 
-def section_rotation(
-    motions: Motions, factors: Array, fraction: Array, unknowns: Any, *, corrected: bool
-) -> Callable[[Array, int], Any]:
+def section_rotation(motions: Motions, factors: Array, fraction: Array, unknowns: Numeric, *, corrected: bool) -> Curve:
     """Section rotation psi of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
 
     A C2 spline through the links' middles and the ends. A link's rotation is the mean of psi over its length,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Numeric, Sparse
 from verify.errors import InputError
 from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, divide
@@ -132,11 +132,11 @@ class ChainStructure(DiscreteModel):
         return count
 
     @cached_property
-    def _weights(self) -> tuple[Any, Any]:
+    def _weights(self) -> tuple[Sparse, Sparse]:
         return attachment_weights(self.chain, [body.position for body in self.attached.bodies], self.attachment)
 
     @cached_property
-    def _rotations(self) -> Any:
+    def _rotations(self) -> Sparse:
         return self.attached.rotations(self._weights[1], self.motions)
 
     # --- Stiffness and mass --------------------------------------------------------------------------------------
@@ -228,7 +228,7 @@ class ChainStructure(DiscreteModel):
             rigid[: len(motions.free)] -= (across[springs[:1]] @ rigid)[0]
         return rigid
 
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with the beam's loss factor and joint dashpots; springs, foundation and tension are lossless."""
         d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
         if not (self.beam.loss_factor or dashpots):
