@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array, Indices, Sparse
-from verify.formatting import one_line
 from verify.linear.factored import sparse_rows
 from verify.problem.supports import FIXED
 
@@ -34,7 +33,6 @@ class Chain:
 
     flexibilities: Array | None = None
     """(N,), l/EI of the links of a stepped beam; None where it is proportional to their lengths."""
-    __repr__ = one_line(n_segments="links", supports="", unit="m")
 
     @property
     def n_segments(self) -> int:
@@ -123,7 +121,6 @@ class Motions:
     """(N + 1,), slip compliances of the joints, infinite without slip; empty in theories without shear."""
     body_compliances: Array = field(default_factory=lambda: np.zeros(0))
     """(bodies that slip,), slip compliances of the bodies."""
-    __repr__ = one_line(n="unknowns", n_slips="slips")
 
     @property
     def free(self) -> Indices:
