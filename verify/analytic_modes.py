@@ -28,13 +28,13 @@ from verify.exact import closed_forms
 from verify.exact.characteristic import buckling_load, check_stable, count_at, wavenumber_length
 from verify.exact.layout import BeamLayout, Station, layout_of, with_stations
 from verify.exact.transfer import ROTATION, Motion, divide, modal_motion, solve
-from verify.linear.base import BeamModel
-from verify.linear.field import HarmonicField, acting_on, phasor, point_force, wavenumber
+from verify.linear.base import BeamModel, Devices
+from verify.linear.field import HarmonicField, acting_on, phasor, point_force
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Loads, Numbers, frequencies_on, positions_on, reshape_like, vector_on
 from verify.linear.system import RESONANCE
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
+from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment, check_features
 from verify.problem.device import Device
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT
@@ -103,18 +103,12 @@ class ExactModel(BeamModel):
         betas = np.array([wavenumber_length(layout, mode + rigid) for mode in range(1, n_modes + 1)])
         together = n_modes if layout.plain else _TOGETHER
         blocks = [range(first, min(first + together, n_modes + 1)) for first in range(1, n_modes + 1, together)]
-        empty = np.empty(0)
         return Modes(
             model=self.name,
             count=None,
             length=self.beam.length,
             frequencies_hz=self._hertz(betas),
             shapes=lambda x, derivative: np.concatenate([self._shapes(some, x, derivative) for some in blocks]),
-            nodes=empty,
-            points=empty,
-            sampled=lambda: np.empty((n_modes, 0)),
-            curvature_points=empty,
-            curvatures=lambda: np.empty((n_modes, 0)),
             method="closed form" if layout.plain else "counted",
         )
 
@@ -136,12 +130,7 @@ class ExactModel(BeamModel):
     # --- Harmonic fields ---
 
     def harmonic(
-        self,
-        forces: Loads,
-        frequency_hz: Numbers,
-        *,
-        devices: Device | Sequence[Device] = (),
-        modal_damping: float = 0.0,
+        self, forces: Loads, frequency_hz: Numbers, *, devices: Devices = (), modal_damping: float = 0.0
     ) -> HarmonicField:
         """The exact steady field under harmonic point forces and moments; see `BeamModel.harmonic`.
 
@@ -152,13 +141,11 @@ class ExactModel(BeamModel):
                 f"modal_damping = {modal_damping!r} is for discrete models: give the beam loss_factor = "
                 f"{2.0 * modal_damping!r} instead"
             )
-        return self._field(*self.check_stationed(forces, devices), (), frequency_hz)
+        return self._field(*self.check_stationed(forces, devices, frequency_hz), (), frequency_hz)
 
-    def imposed(
-        self, displacements: Forces, frequency_hz: float, *, devices: Device | Sequence[Device] = ()
-    ) -> HarmonicField:
+    def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The exact steady field under imposed harmonic displacements, amplitudes in m; see `BeamModel.imposed`."""
-        drives, stationed = self.check_stationed(displacements, devices, PointForce)
+        drives, stationed = self.check_stationed(displacements, devices, frequency_hz, PointForce)
         length = self.beam.length
         places = sorted(drive.position for drive in drives)
         fixed = [at for at, end in zip((0.0, length), self.beam.supports, strict=True) if FIXED[end].deflection]
@@ -179,8 +166,6 @@ class ExactModel(BeamModel):
     ) -> HarmonicField:
         """The field under loads (N, N m) and imposed displacements (`drives`, m), with devices."""
         beam, frequencies, single = self.beam, frequencies_on(self.beam, frequency_hz), np.ndim(frequency_hz) == 0
-        if (devices or drives) and not single:
-            raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
         forces = (*forces, *(device.own_force for device in devices if device.amplitude))
         layout = self._stationed(tuple(force.position for force in (*forces, *drives)), devices)
         self._check_resonance(frequencies, drives, devices)
@@ -302,10 +287,6 @@ class ExactModel(BeamModel):
         """Lowest buckling load in compression, N (Euler). Raises InputError."""
         return buckling_load(self.beam)
 
-    def wavenumber(self, frequency_hz: float) -> complex:
-        """Wavenumber of propagating waves in the beam's own section by its theory, 1/m."""
-        return wavenumber(self.beam, frequency_hz, self.theory)
-
     def time_basis(self, *, modes: int | None = None, line: str = "spline") -> TimeBasis:
         """The first `modes` modes (default: 400) and the quasi-static response of the higher modes.
 
@@ -385,7 +366,7 @@ class ExactModel(BeamModel):
 
 def check_in_time(beam: Beam, remedy: str = "give model = 'fem' or 'segment'") -> None:
     """Raise InputError for a beam without an exact time basis; `remedy` ends the message."""
-    beam.check_features("the exact beam in time", ("section", "mass"), remedy)
+    check_features(beam, "the exact beam in time", ("section", "bodies"), remedy)
     check_supported(beam)
 
 

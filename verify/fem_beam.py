@@ -10,7 +10,6 @@ inertia, and the linear curvature of a cubic cannot represent a jump inside an e
 of equal elements are integers, exact at any N.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import pi, sqrt
@@ -19,13 +18,13 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Curve, Indices, Numeric, Sparse
 from verify.linear.discrete import DiscreteModel
 from verify.linear.factored import sparse_rows
 from verify.linear.mesh import Parts, check_division, cut_pieces, divide
 from verify.linear.surface import section_at
 from verify.linear.system import StructuralSystem
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, rigid_lines, with_attachments
 from verify.problem.supports import FIXED
 from verify.settings import DEFAULT, Theory
 from verify.validation import MOST_PARTS, check_integer
@@ -187,15 +186,15 @@ class HermiteModel(DiscreteModel):
             x = (nodes[:-1, None] + lengths[:, None] * (0.5 + 0.5 * points)).ravel()
             shares = (lengths[:, None] * 0.5 * weights).ravel()
             strains.append((self._rows(x), self._foundation * shares))
-        for spring in beam.spring:
-            at = np.array([spring.position / self.unit])
-            for value, rotation in ((spring.stiffness * self.unit**2, False), (spring.rotational, True)):
+        for attachment in beam.attached:
+            at = np.array([attachment.position / self.unit])
+            for value, rotation in ((attachment.stiffness * self.unit**2, False), (attachment.rotational, True)):
                 if value:
                     most = RIGID * self.mesh.stiffnesses.max()
                     strains.append((self._rows(at, rotation=rotation), np.array([min(value * scale, most)])))
         return strains
 
-    def _mass(self) -> Any:
+    def _mass(self) -> Sparse:
         """Mass matrix M of the elements over the unknowns by scikit-fem, with rotary inertia."""
         from scipy.sparse import csc_array
 
@@ -209,14 +208,14 @@ class HermiteModel(DiscreteModel):
         free = (rows >= 0) & (columns >= 0)
         return csc_array((data[free], (rows[free], columns[free])), shape=(self.n_unknowns,) * 2)
 
-    def _bodies(self) -> Any:
+    def _bodies(self) -> Sparse | None:
         """Rows R (r, n) of attached bodies: R^T R is their part of M."""
         from scipy.sparse import vstack
 
         beam, unit = self.beam, self.unit
         rows = [
             sqrt(value / beam.mass_per_length) * self._rows(np.array([body.position / unit]), rotation=rotation)
-            for body in beam.mass
+            for body in beam.attached
             for value, rotation in ((body.mass / unit, False), (body.rotary_inertia / unit**3, True))
             if value
         ]
@@ -224,14 +223,14 @@ class HermiteModel(DiscreteModel):
 
     def _rigid(self) -> Array:
         """Rigid motions, (n, 0 to 2)."""
-        lines, nodes = self.beam.rigid_lines, self.mesh.nodes
+        lines, nodes = rigid_lines(self.beam), self.mesh.nodes
         shapes = np.zeros((len(self.unknowns), len(lines)))
         for j, (a, b) in enumerate(lines):
             shapes[: 2 * len(nodes) : 2, j] = a / self.unit + b * nodes if b else a
             shapes[1 : 2 * len(nodes) : 2, j] = b
         return shapes[self.unknowns >= 0]
 
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with the beam's loss factor on bending and shear, (m,)."""
         stiffness, strains = self.system.stiffness, (4 if self.shear else 2) * self.n_elements
         if not self.beam.loss_factor:
@@ -240,16 +239,16 @@ class HermiteModel(DiscreteModel):
 
     # --- Readings ------------------------------------------------------------------------------------------------
 
-    def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Any:
+    def _rows(self, x: Array, derivative: int = 0, *, rotation: bool = False) -> Sparse:
         from verify.elements.element import rows
 
         return rows(self.mesh.nodes, x, self.unknowns, derivative, rotation=rotation)
 
-    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Sparse:
         """Shape functions of the unknowns at positions (m), sparse (n_positions, n)."""
         return self._rows(np.asarray(positions) / self.unit, rotation=rotation)
 
-    def _read(self, unknowns: Any, which: int) -> Callable[[Array, int], Any]:
+    def _read(self, unknowns: Numeric, which: int) -> Curve:
         """Deflection (which = 0) or rotation (1) of unknowns (n, k); at a node that of the right element."""
 
         @cache
@@ -262,11 +261,11 @@ class HermiteModel(DiscreteModel):
 
         return lambda x, derivative: np.ascontiguousarray(polynomials()(x, derivative).T)
 
-    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+    def line(self, unknowns: Numeric) -> Curve:
         """Deflection by the cubics of the elements: (x in m, derivative) -> (k, len(x))."""
         return self._read(unknowns, 0)
 
-    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+    def rotation_line(self, unknowns: Numeric) -> Curve | None:
         """Section rotation of Timoshenko elements: (x in m, derivative) -> (k, len(x)); None without shear."""
         return self._read(unknowns, 1) if self.shear else None
 
@@ -295,8 +294,8 @@ class HermiteModel(DiscreteModel):
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
         """Cubics of all modes for motion in time, right-continuous at nodes."""
         fields = {"shapes": self.line(vectors), "edges": self.edges, "degree": 3}
-        if self.shear and self.beam.mass:
-            at = np.array([mass.position for mass in self.beam.mass])
+        if self.shear and self.beam.attached:
+            at = np.array([attachment.position for attachment in self.beam.attached])
             fields["turns"] = lambda: (self.load_rows(at, rotation=True) @ vectors).T / self.unit
         return fields
 
@@ -342,7 +341,7 @@ class HermiteModel(DiscreteModel):
         for first, stop in zip([0, *(last[:-1] + 1)], last + 1, strict=True):
             lengths = self.mesh.lengths[first:stop]
             section = section_at(self.beam, self.mesh.nodes[first] * self.unit)
-            element = replace(section, length=lengths.max() * self.unit, supports=("free", "free"), mass=(), spring=())
+            element = replace(with_attachments(section), length=lengths.max() * self.unit, supports=("free", "free"))
             model = HermiteModel(element, 1, theory=self.theory)
             system, opposite = model.system, np.eye(model.n_unknowns)[:, [0, 1, *range(4, model.n_unknowns)]]
             opposite[[2, 3], [0, 1]] = -1.0

@@ -1,8 +1,10 @@
 """Numbers and names as text: SI prefixes, rounding residues, names of theories."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import floor, isfinite, log10
 from typing import NamedTuple
+
+import numpy as np
 
 from verify.errors import written
 
@@ -50,6 +52,30 @@ def with_error(value: float, error: float, sign: str = "") -> str:
         return f"{value:{sign}.0f} ± {error:g}"
     digits = min(floor(log10(abs(value))) - place + 1, 15)  # of a float, after which come digits of its rounding
     return f"{value:{sign}#.{digits}g} ± {error:g}".replace(".e", "e")
+
+
+def one_line(**units: str) -> Callable[[object], str]:
+    """A `__repr__` of fields and properties with these units: range and shape of arrays, number of other entries."""
+
+    def shown(value: object) -> str:
+        if isinstance(value, dict):
+            return str(len(value))
+        array = np.asarray(value := getattr(value, "name", value))
+        if array.ndim and array.dtype.kind in "fci":
+            sizes = abs(array) if np.iscomplexobj(array) else array
+            return f"{np.nanmin(sizes):.4g} to {np.nanmax(sizes):.4g}"
+        if array.ndim and array.dtype.kind == "O":
+            return str(len(array))
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+    def text(self: object) -> str:
+        values = {name: getattr(self, name) for name in units}
+        present = {name: value for name, value in values.items() if value is not None and np.size(value)}
+        shapes = {name: f" {value.shape}" for name, value in present.items() if isinstance(value, np.ndarray)}
+        parts = [f"{name} = {shown(v)} {units[name]}".rstrip() + shapes.get(name, "") for name, v in present.items()]
+        return f"<{type(self).__name__}: {', '.join(parts)}>"
+
+    return text
 
 
 def as_written(numbers: Iterable[float]) -> str:

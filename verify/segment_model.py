@@ -17,7 +17,6 @@ The paper (Section II.B) interpolates uncorrected upper corners of the links and
 Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses in rho A unit.
 """
 
-from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, replace
 from math import pi
 from typing import Any, ClassVar, Literal
@@ -25,11 +24,11 @@ from typing import Any, ClassVar, Literal
 import msgspec
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Curve, Numeric, Sparse
 from verify.engines.description import RigidChain, rigid_chain
 from verify.errors import InputError
 from verify.linear.mesh import check_division
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, features
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights, joint_weights
 from verify.segments.chain import link_inertia, right_of
@@ -81,7 +80,7 @@ class SegmentModel(ChainStructure):
         check_integer("n_segments", self.n_segments, self.fewest, MOST_PARTS)
         super().__post_init__()
         check_division(self.beam, self.n_segments, self.grading)
-        if WALLS[self.wall].first and (self.beam.features or self.grading != 1.0 or self.theory != "euler-bernoulli"):
+        if WALLS[self.wall].first and (features(self.beam) or self.grading != 1.0 or self.theory != "euler-bernoulli"):
             raise InputError(
                 f"wall = {self.wall!r} is for uniform beams of equal segments without attachments: choose another wall"
             )
@@ -109,7 +108,7 @@ class SegmentModel(ChainStructure):
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 
-    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Sparse:
         """Weights of the unknowns by `load`; a couple has the weights of an attachment."""
         from scipy.sparse import vstack
 
@@ -124,36 +123,36 @@ class SegmentModel(ChainStructure):
         ]
         return vstack(each, format="csr")
 
-    def device_rows(self, positions: Array) -> Any:
+    def device_rows(self, positions: Array) -> Sparse:
         """Weights of an attached body, order 4: those of a force omit its compliance at its own position, order 3."""
         from scipy.sparse import vstack
 
         weights = [attachment_weights(self.chain, [at], self.attachment)[0] for at in positions.tolist()]
         return vstack(weights, format="csr") @ self.motions.positions
 
-    def _joints(self, unknowns: Any) -> Any:
+    def _joints(self, unknowns: Numeric) -> Any:
         """Positions of joints 0..N, (k, N + 1), from unknowns (n, k)."""
         return (self.motions.positions @ unknowns).T
 
-    def _corrected(self, unknowns: Any) -> Any:
+    def _corrected(self, unknowns: Numeric) -> Any:
         """The beam's deflection at joints 0..N, (k, N + 1), from unknowns (n, k)."""
         if self.theory != "timoshenko":
             return corrected_reading(self.chain, self._joints(unknowns))
         change = shear.shear_change(self.motions, self._shear_compliances, unknowns)
         return corrected_reading(self.chain, self._joints(unknowns), (self.motions.rotations @ unknowns).T, change)
 
-    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+    def line(self, unknowns: Numeric) -> Curve:
         """The C2 spline through the joints, or the links, by `reading`."""
         if self.reading == "links":
             return self._links(unknowns)
         read = self._corrected if self.reading == "corrected" else self._joints
         return line_through(self.chain, lambda: read(unknowns), slipping=self.theory == "timoshenko")
 
-    def _links(self, unknowns: Any, *, both_sides: bool = True) -> Callable[[Array, int], Any]:
+    def _links(self, unknowns: Numeric, *, both_sides: bool = True) -> Curve:
         middles, rotations = ((m @ unknowns).T for m in (self.motions.middles, self.motions.rotations))
         return rigid_links(self.chain, middles, rotations / self.unit, both_sides=both_sides)
 
-    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+    def rotation_line(self, unknowns: Numeric) -> Curve | None:
         """The rotation of the section under Timoshenko's theory."""
         if self.theory != "timoshenko":
             return None
@@ -187,7 +186,7 @@ class SegmentModel(ChainStructure):
         return places | {"readings": readings, "sampled": readings["corrected"], "curvatures": curvatures}
 
     def time_line(self, vectors: Array, line: str) -> dict[str, Any]:
-        """Contact line through the corrected joints, or the "raw" links, and rotations of attached masses."""
+        """Contact line through the corrected joints, or the "raw" links, and rotations of attachments."""
         if self.reading != "corrected":
             raise InputError(
                 f"reading = {self.reading!r} is for harmonic fields: for motion in time give line = 'spline' "
@@ -201,7 +200,7 @@ class SegmentModel(ChainStructure):
         index = {body.position: i for i, body in enumerate(self.attached.bodies)}
 
         def rotations() -> Array:
-            rows = self._rotations[[index[mass.position] for mass in self.beam.mass]]
+            rows = self._rotations[[index[attachment.position] for attachment in self.beam.attached]]
             return np.asarray((rows @ self.motions.both @ vectors).T / self.unit)
 
         raw = line == "raw"
@@ -210,7 +209,7 @@ class SegmentModel(ChainStructure):
             if raw
             else line_through(self.chain, lambda: self._corrected(vectors), slipping=self.theory == "timoshenko")
         )
-        turns = rotations if self.beam.mass else None
+        turns = rotations if self.beam.attached else None
         return {"shapes": shapes, "edges": self.edges, "degree": 1 if raw else 3, "turns": turns}
 
     @property

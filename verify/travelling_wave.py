@@ -27,11 +27,12 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, NoFigureError
+from verify.formatting import one_line
 from verify.linear.field import HarmonicField, phasor, wavenumber
 from verify.linear.numerics import extremes, gauss_rule, mean_over, whole_halves
 from verify.linear.positions import Numbers, positions_on, real_array
 from verify.linear.surface import surface_distance_at
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features
 from verify.validation import check_number
 from verify.waves.best_drive import BestDrive, best_drive
 from verify.waves.driven_case import DrivenCase
@@ -68,6 +69,7 @@ class WaveMeasures:
     """(m,), m: positions that separate the extremes of the field."""
     field: HarmonicField | None = None
     """The field in which the wave is; None of a time series."""
+    __repr__ = one_line(window="m", reflection="", standing_wave_ratio="")
 
     @property
     def reflection(self) -> float:
@@ -155,13 +157,13 @@ class WaveMeasures:
                 f"device.position = {field.couples[0]!r}: a power balance models no device against rotation, leave it "
                 "out"
             )
-        beam.check_features("a power balance", ("mass", "spring", "tension", "foundation"))
+        check_features(beam, "a power balance", ("attached", "tension", "foundation"))
         self.waves.check_travelling()
         left = [force for force in field.forces if force.position <= self.window[0]]
         speeds = 1j * field.omega * field.deflection([force.position for force in left])
         power = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
         # the third derivative jumps at a force, the second at a couple: quadrature between the jumps
-        jumps = [load.position for load in (*field.forces, *beam.attached)]
+        jumps = [force.position for force in field.forces] + [attachment.position for attachment in beam.attached]
         cells = np.linspace(0.0, middle, max(int(middle * field.wavenumber.real), 8))
         edges = np.unique([*cells, *(x for x in jumps if x < middle)])
         points, weights = np.polynomial.legendre.leggauss(8)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import cache
 from math import inf, isfinite
 from types import MemberDescriptorType
-from typing import Annotated, Any, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar, cast
 
 import msgspec
 from msgspec import Meta
@@ -16,6 +16,11 @@ MOST_PARTS = 10**9  # largest number of segments or elements
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A dimensionless number, which a command line also accepts in per cent: 0.001 or 0.1%."""
 Item = TypeVar("Item")
+if TYPE_CHECKING:
+    Items: TypeAlias = Sequence[Item]
+    Pair: TypeAlias = Sequence[Item]
+else:  # fields accept any sequence and hold tuples, see `validate`
+    Items, Pair = tuple[Item, ...], tuple[Item, Item]
 
 
 def unit(name: str, **limits: float | None) -> Meta:

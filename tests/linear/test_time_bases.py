@@ -68,7 +68,7 @@ def test_a_body_rotates_as_the_beam_does(position):
     off = []
     for count in (40, 80):
         basis = SegmentModel(beam, count).time_basis()
-        slopes, found = basis.shapes(np.array([position]), 1)[:3, 0], basis.body_turns()[:3, 0]
+        slopes, found = basis.shapes(np.array([position]), 1)[:3, 0], basis.attached_turns()[:3, 0]
         off.append(abs(found / slopes - 1.0).max())
     assert off[1] < 0.5 * off[0] < 5e-3
 

@@ -193,5 +193,5 @@ def test_neighbours_of_a_pinned_beam_have_the_ratio_of_a_tangent(lower, part):
 def test_two_equal_modes_are_a_standing_wave():
     with pytest.raises(InputError, match=r"modes = \[4, 4\]: give two different modes"):
         lumped_swr(STRIP, 0.1, (4, 4))
-    with pytest.raises(InputError, match=r"beam\.mass: the two-mode model takes a uniform beam"):
+    with pytest.raises(InputError, match=r"beam\.mass"):
         lumped_swr(brass(), 0.1)

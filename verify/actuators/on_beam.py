@@ -24,6 +24,7 @@ from verify.actuators.patch import Patch
 from verify.actuators.port import Actuator, Port
 from verify.actuators.shunt import Load
 from verify.errors import InputError, ResonanceError
+from verify.formatting import one_line
 from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, combined, phasor, point_force
 from verify.linear.positions import Loads, frequencies_on, loads_on
@@ -115,6 +116,7 @@ class ActuatedBeam(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     field: HarmonicField
     actuators: tuple[ActuatorState, ...]
+    __repr__ = one_line(field="", actuators="")
 
 
 def on_beam(

@@ -17,7 +17,7 @@ from msgspec.structs import replace
 from verify.actuators.materials import PIEZO, MaterialName, PiezoMaterial
 from verify.actuators.port import Actuator, Port
 from verify.errors import InputError
-from verify.problem.beam import SHORTEST_SECTION, Beam
+from verify.problem.beam import SHORTEST_SECTION, Beam, check_features
 from verify.problem.cross_section import CrossSection, Section, piece_of, set_fields
 from verify.validation import Relative, check_number, unit, validate
 
@@ -138,7 +138,7 @@ class Patch(Actuator, frozen=True, kw_only=True, forbid_unknown_fields=True, tag
         The shear stiffness remains that of the bare beam. Raises InputError for patches that overlap or lie off the
         beam, and for a beam that is stepped or not rectangular.
         """
-        beam.check_features("a beam under patches", ("mass", "spring", "tension", "foundation"))
+        check_features(beam, "a beam under patches", ("attached", "tension", "foundation"))
         section = self.bonded(beam).laminate
         laminate = {
             name: getattr(section, name)

@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.errors import InputError, NoFigureError
+from verify.formatting import one_line
 from verify.linear.modes import Modes
 
 T = TypeVar("T", float, complex)
@@ -105,6 +106,7 @@ class ModeErrors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Index of the computed mode of every exact mode."""
     mac: Array
     """MAC of the pairs."""
+    __repr__ = one_line(frequency="", mac="")
 
     @property
     def frequency(self) -> Array:

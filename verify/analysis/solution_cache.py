@@ -12,7 +12,7 @@ from verify.errors import InputError, NoBracketError
 from verify.exact.error_laws import leading_error
 from verify.linear.modes import Modes
 from verify.linear.registry import MEAN, MODELS, bounding, discrete
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, features
 from verify.settings import DEFAULT
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def theory_of(settings: Settings) -> str:
 
 def unproven(beam: Beam, settings: Settings = ()) -> str:
     """Reason why segments are not proven to lie below and elements above the exact frequencies; empty if proven."""
-    if added := (*beam.features, *("section",) * bool(beam.section)):
+    if added := (*features(beam), *("section",) * bool(beam.section)):
         return f"with beam.{added[0]} the exact frequency may lie outside of both models, give a beam without"
     chosen = {"theory": EULER, "grading": 1.0, "wall": DEFAULT.wall, **dict(settings)}
     proven = {"theory": EULER, "grading": 1.0, "wall": "half" if "clamped" in beam.supports else chosen["wall"]}

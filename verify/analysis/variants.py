@@ -86,20 +86,20 @@ class Rules(_Several, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def without_effect(self, beam: Beam) -> dict[str, str]:
         """Settings other than the default without effect on this beam, with the reason."""
         reasons = {"wall": not has_wall(beam) and "no end is clamped"}
-        reasons["attachment"] = not (beam.mass or beam.spring) and "nothing is attached to the beam"
+        reasons["attachment"] = not beam.attached and "nothing is attached to the beam"
         changed = {name for chosen in self.combinations for name, _ in chosen}
         return {name: f"it has no effect, {why}" for name, why in reasons.items() if why and name in changed}
 
 
 def has_wall(beam: Beam) -> bool:
     """Whether a chain has a joint at a wall: an end is clamped, or has a rotational spring or rotary inertia."""
-    ends = [s.position for s in beam.spring if s.rotational] + [m.position for m in beam.mass if m.rotary_inertia]
+    ends = [one.position for one in beam.attached if one.turning]
     return "clamped" in beam.supports or 0.0 in ends or beam.length in ends
 
 
 def attached_within(beam: Beam) -> bool:
     """Whether attachments on rigid links have an effect: an attachment lies between the ends, or rotates."""
-    rotating = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
+    rotating = any(one.turning for one in beam.attached)
     return rotating or any(0.0 < one.position < beam.length for one in beam.attached)
 
 

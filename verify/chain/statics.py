@@ -16,6 +16,7 @@ from verify.arrays import Array
 from verify.blas import one_blas_thread
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
+from verify.formatting import one_line
 from verify.linear.positions import Numbers, as_vector
 from verify.problem.base_motion import FIXED
 from verify.problem.beam import Beam
@@ -214,6 +215,7 @@ class Bent(Struct, frozen=True, eq=False, kw_only=True):
     """(N + 1,), 1/m: moment over EI, at a step of the right section."""
     energy: float
     """Elastic energy, J: of the joints, and of the last half link under the applied moment."""
+    __repr__ = one_line(count="", deflection="m", turn="rad", energy="J")
 
     @property
     def tip(self) -> Array:

@@ -14,7 +14,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.problem.base_motion import FIXED, Base
-from verify.problem.beam import Beam, PointForce, PointLoad
+from verify.problem.beam import Beam, PointForce, PointLoad, check_features
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
 from verify.segments.chain import Chain
@@ -122,7 +122,7 @@ def build_system(
         raise InputError(f"wall = {wall!r} is for the linear chain: choose another wall")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: a nonlinear chain has no complex modulus, give 0")
-    beam.check_features("the nonlinear chain", ("section",))
+    check_features(beam, "the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = SegmentModel(beam, n_segments, wall=wall, joints=joints).chain
     unit, mass = chain.unit, beam.mass_per_length

@@ -11,7 +11,7 @@ from verify.analysis.variants import attached_within, has_wall
 from verify.arrays import Array
 from verify.compare.discrete import STEPS, DiscreteBeam
 from verify.linear.registry import MODELS
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, is_stepped
 from verify.segments.orders import order_of
 from verify.settings import DEFAULT, THEORIES, WALLS, wall_label
 
@@ -75,7 +75,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         if not self.sized:
             return None
         if self.model == ELEMENTS:
-            even = "free" not in beam.supports and not beam.stepped and self.theory == EULER
+            even = "free" not in beam.supports and not is_stepped(beam) and self.theory == EULER
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
         if self.joints in STEPS:
             return None if self.joints == "centre" else 1
@@ -103,7 +103,7 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     faults = [name for name, rule in WALLS.items() if rule.fault]
     every = [name for name in WALLS if clamped or name not in faults]
     walls = sorted(every, key=lambda name: name != "half") if clamped or has_wall(beam) else [None]
-    rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
+    rules = ["series"] + ["printed"] * is_stepped(beam) + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):
         if (wall == "welded" and (theory != EULER or not clamped)) or (wall in faults and theory == "timoshenko"):
             continue
@@ -112,7 +112,7 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     if attached_within(beam):
         for joints, wall in product(rules, [wall for wall in common if wall not in faults]):
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
-    for joints, wall in product(STEPS if beam.stepped else (), common):
+    for joints, wall in product(STEPS if is_stepped(beam) else (), common):
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints)
     for mass, wall in product(("points", "joints"), common):
         yield Candidate(model=CHAIN, mass=mass, wall=wall)

@@ -1,6 +1,6 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any, get_args
 
@@ -128,7 +128,7 @@ def exact_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
         return np.asarray(MODELS[ELEMENTS].build(beam, fine).modes(n_modes).deflection(x))
 
 
-def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
+def _other_supports(beam: Beam, logs: Array, modes: Indices) -> Sequence[str]:
     """Other supports with which the exact beam has the lower half of the frequencies; empty if none."""
     low = modes < max(len(logs) // 2, 2)
     for supports in (beam.supports, *product(get_args(Support), repeat=2)):

@@ -13,7 +13,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.mesh import divide
 from verify.linear.system import StructuralSystem
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features, rigid_lines
 
 STEPS = {
     "centre": "equal links by the section at their centre",
@@ -33,7 +33,7 @@ class DiscreteBeam:
     """A beam in N equal parts per section, relative to its own EI and rho A. Raises InputError for attachments."""
 
     def __init__(self, beam: Beam, count: int, theory: str, joints: str = "series") -> None:
-        beam.check_features("this candidate", ("section",))
+        check_features(beam, "this candidate", ("section",))
         parts, self.joints = divide(beam, count), joints
         self.beam, self.n, self.unit = beam, count, parts.unit
         self.lengths = np.ones(count) if joints in STEPS else parts.lengths
@@ -129,7 +129,7 @@ class DiscreteBeam:
     def _lowest_hz(self, n_modes: int, strain: Any, stiffness: Array, mass: Any, free: Any) -> Array:
         """Elastic frequencies of B^T diag(stiffness) B against M: `free` deflections, then rotations."""
         size, x = mass.shape[0], np.concatenate([[0.0], np.cumsum(self.lengths)])[free] * self.unit
-        rigid = [np.append(a + b * x, np.full(size - len(x), b * self.unit)) for a, b in self.beam.rigid_lines]
+        rigid = [np.append(a + b * x, np.full(size - len(x), b * self.unit)) for a, b in rigid_lines(self.beam)]
         system = StructuralSystem([strain], stiffness, mass.tocsc(), np.array(rigid).reshape(len(rigid), size).T)
         available = min(n_modes, size - len(rigid))
         if available < 1:

@@ -15,7 +15,7 @@ from verify.compare.discrete import STEPS
 from verify.compare.effects import effect_of, fit_parameter
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, features
 
 FLOOR, AGREED, AMBIGUOUS = 1e-9, 3e-6, 2.0
 """Relative error of solvers; difference beyond the digits up to which a candidate agrees with a list; factor of the rms
@@ -194,9 +194,9 @@ def _faults(data: Data) -> Iterator[Fault]:
     entries, modes, n, beam = data.entries, data.modes, len(data.entries), data.beam
     if data.count is not None:
         yield Fault("count", entries, modes)
-    for name in beam.features:
+    for name in features(beam):
         if name != "section":
-            without = replace(beam, **{name: () if name in ("mass", "spring") else 0.0})
+            without = replace(beam, **{name: () if isinstance(getattr(beam, name), tuple) else 0.0})
             yield Fault("scene", entries, modes, f"beam.{name}", beam=without)
     if len(entries) < FEWEST:
         return

@@ -14,7 +14,7 @@ from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
 from verify.errors import InputError
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, is_lossless
 from verify.report.result import Column, Figure, Result, Table
 from verify.settings import WALLS
 
@@ -183,9 +183,9 @@ def _tables(fits: Identification, beam: Beam, rows: list[Entry], required: list[
         columns = [Column("fault"), Column("value"), *sizes, *RMS]
         tables.append(Table("Faults tested, the likeliest first", columns, lines))
     if best.fault.kind == "factor":
-        held = bool(beam.spring or beam.foundation or beam.tension)
-        euler = best.candidate.theory == EULER and not (held or beam.mass)
-        possible = {"E": not held, "rho": not beam.mass}
+        held, heavy = is_lossless(beam), any(attachment.massive for attachment in beam.attached)
+        euler = best.candidate.theory == EULER and not (held or heavy)
+        possible = {"E": not held, "rho": not heavy}
         lines = [(name, best.parameter**power - 1.0) for name, power in POWERS.items() if possible.get(name, euler)]
         columns = [Column("parameter"), Column("change", format="+.3g", percent=True)]
         tables.append(Table("Parameters that alone explain the factor", columns, lines))

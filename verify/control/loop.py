@@ -8,6 +8,7 @@ from msgspec import Struct
 from verify.arrays import Array, ComplexArray
 from verify.control.controller import Controller
 from verify.errors import InputError, NoFigureError
+from verify.formatting import one_line
 from verify.waves.best_drive import PROPORTIONAL
 from verify.waves.driven_case import UnitWaves
 
@@ -23,6 +24,7 @@ class Response(Struct, frozen=True, eq=False):
     command: Array  # (n,), from each tick to the next
     target: float
     saturated: float  # Fraction of ticks with the command at a limit
+    __repr__ = one_line(times="s", target="", controlled="", saturated="")
 
     @property
     def error(self) -> Array:

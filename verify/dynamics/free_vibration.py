@@ -13,6 +13,7 @@ from verify.dynamics.excitation import check_damping, modal_rows
 from verify.dynamics.linear_system import basis_of
 from verify.dynamics.result import EndState
 from verify.errors import InputError, shown
+from verify.formatting import one_line
 from verify.linear.numerics import extremes
 from verify.linear.positions import Numbers, real_array, vector_on
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
@@ -63,6 +64,7 @@ class FreeVibration(Struct, frozen=True, eq=False, kw_only=True):
     """State from which `simulate` continues (`start`)."""
     notes: tuple[str, ...]
     """Method of the modes; corners of the initial shape."""
+    __repr__ = one_line(model="", count="", times="s", deflection="m", frequencies_hz="Hz")
 
 
 @one_blas_thread()
@@ -193,14 +195,14 @@ def _projected(basis: TimeBasis, name: str, shape: Shape) -> tuple[Array, float]
     masses = np.array([piece.mass_per_length for piece in beam.pieces])
     weight = (half * weights).ravel() * masses[np.clip(np.searchsorted(steps, x, side="right") - 1, 0, len(masses) - 1)]
     shapes, values = basis.shapes(x, 0), function(x)
-    if beam.mass:
-        places, inertias = np.array([m.position for m in beam.mass]), np.array([m.rotary_inertia for m in beam.mass])
+    if beam.attached:
+        places, masses, inertias = np.array([(a.position, a.mass, a.rotary_inertia) for a in beam.attached]).T
         # difference quotient across the body: at a corner the mean of both sides
         left, right = np.maximum(places - NEAR * beam.length, 0.0), np.minimum(places + NEAR * beam.length, beam.length)
         turns = (function(right) - function(left)) / (right - left)
-        shapes = np.hstack([shapes, basis.shapes(places, 0), basis.body_turns()])
+        shapes = np.hstack([shapes, basis.shapes(places, 0), basis.attached_turns()])
         values = np.concatenate([values, function(places), turns])
-        weight = np.concatenate([weight, [m.mass for m in beam.mass], inertias])
+        weight = np.concatenate([weight, masses, inertias])
     weighted = shapes * weight
     q = np.linalg.solve(weighted @ shapes.T, weighted @ values)
     size = float(weight @ values**2)

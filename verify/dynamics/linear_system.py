@@ -16,7 +16,7 @@ from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
 from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
-from verify.problem.beam import Beam, PointLoad, PointMoment
+from verify.problem.beam import Beam, PointLoad, PointMoment, is_lossless
 
 NO_READINGS = np.empty((1, 0), dtype=complex)
 EXACT_DEGREE = 8
@@ -245,7 +245,8 @@ def steady_stage(
         softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
         cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
         jumps = [*np.cumsum([piece.length for piece in beam.pieces[:-1]])]
-        jumps += [one.position for one in (*beam.attached, *harmonic.forces)]
+        jumps += [attachment.position for attachment in beam.attached]
+        jumps += [force.position for force in harmonic.forces]
         jumps += harmonic.couples
         edges, degree = np.union1d(np.linspace(0.0, beam.length, cells + 1), jumps), EXACT_DEGREE
     if basis:
@@ -289,7 +290,7 @@ def steady_beam(
 ) -> ActuatedBeam:
     """The steady state of a model with damping ratio `damping`; None: the beam's loss factor. Raises InputError."""
     kind, modal_damping = MODELS.named(model), 0.0
-    if damping is not None and (damping != 0.5 * beam.loss_factor or beam.lossless):
+    if damping is not None and (damping != 0.5 * beam.loss_factor or is_lossless(beam)):
         # the exact field has no modes: a loss factor of twice the ratio is equivalent
         modal_damping = damping if kind.sized else 0.0
         beam = replace(beam, loss_factor=0.0 if kind.sized else 2.0 * damping)

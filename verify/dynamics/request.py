@@ -22,7 +22,7 @@ from verify.linear.mesh import part_counts
 from verify.linear.positions import loads_on, vector_on
 from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
-from verify.problem.beam import Beam, PointLoad, check_frequency
+from verify.problem.beam import Beam, PointLoad, check_frequency, is_lossless
 from verify.problem.slider import GRAVITY, Slider
 from verify.validation import as_tuple, check_number, check_type
 
@@ -165,7 +165,7 @@ def request_of(
         check_sliders(beam, sliders, starts)
     step = step_of(step)
     longest = _longest_step(hertz, duration, step, sliders)
-    replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and beam.lossless)
+    replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and is_lossless(beam))
     return Request(
         beam=beam,
         forces=forces,

@@ -7,6 +7,7 @@ from verify.arrays import Array
 from verify.contact.state import Records
 from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
@@ -133,6 +134,7 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State of the sliders; None without slider."""
     off: str = ""
     """Message for a slider that left its contact range; else empty."""
+    __repr__ = one_line(time="s")
 
     @property
     def feet(self) -> Array:
@@ -218,6 +220,7 @@ class Motion(Struct, frozen=True, eq=False, kw_only=True):
     """Notes on modes, damping, envelope, and events beyond the capacity."""
     statistics: Statistics
     end: EndState
+    __repr__ = one_line(model="", count="", times="s", deflection="m", travelled="m")
 
     @property
     def position(self) -> Array:

@@ -22,7 +22,7 @@ from skfem.element.element import Element
 from skfem.mesh import MeshLine
 from skfem.refdom import RefLine
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Indices, Sparse
 from verify.linear.factored import sparse_rows
 
 DEFLECTION = np.array(
@@ -112,7 +112,7 @@ def element_matrices(basis: Any, form: Any, weight: Array) -> Any:
     return form.coo_data(basis, weight=DiscreteField(np.broadcast_to(weight[:, None], basis.dx.shape)))
 
 
-def rows(nodes: Array, x: Array, unknowns: Indices, derivative: int = 0, *, rotation: bool = False) -> Any:
+def rows(nodes: Array, x: Array, unknowns: Indices, derivative: int = 0, *, rotation: bool = False) -> Sparse:
     """Weights of the unknowns in w or psi, or a derivative, at x (p,): sparse (p, n).
 
     `unknowns` (n_all,) are the numbers 0..n - 1 of the degrees of freedom, -1 for those that supports prevent.

@@ -25,7 +25,7 @@ from scipy.linalg import solve_banded
 from verify.arrays import Array, Indices
 from verify.errors import InputError
 from verify.linear.mesh import Parts, divide
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features
 from verify.problem.supports import FIXED
 from verify.validation import check_integer, check_number
 
@@ -69,7 +69,7 @@ class PlaneElements:
 
     def __post_init__(self) -> None:
         check_integer("count", self.count, len(self.beam.pieces))
-        self.beam.check_features("the nonlinear elements", ("section",))
+        check_features(self.beam, "the nonlinear elements", ("section",))
         if self.beam.loss_factor:
             raise InputError(f"beam.loss_factor = {self.beam.loss_factor!r}: nonlinear elements have none, give 0")
         if self.axial_stiffness is not None:

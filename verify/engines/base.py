@@ -13,7 +13,8 @@ from verify.arrays import Array
 from verify.engines.describe import describe
 from verify.engines.description import RigidChain
 from verify.errors import InputError
-from verify.problem.beam import Beam, PointForce, check_frequency
+from verify.formatting import one_line
+from verify.problem.beam import Beam, PointForce, check_features, check_frequency
 from verify.registry import Registry
 from verify.segment_model import SegmentModel
 from verify.segments.attachments import joint_weights
@@ -66,7 +67,7 @@ def chain_of(
     """The chain of a uniform pinned undamped beam, `load`: the joints that take a force. Raises InputError."""
     if beam.supports != ("pinned", "pinned"):
         raise InputError(f"beam.supports = {beam.supports!r}: the engines' chain is pinned, give ('pinned', 'pinned')")
-    beam.check_features("the engines' chain")
+    check_features(beam, "the engines' chain")
     if beam.loss_factor:
         raise InputError(f"beam.loss_factor = {beam.loss_factor!r}: the engines' chain is undamped, give 0")
     check_integer("count", n, 2)
@@ -89,6 +90,7 @@ class Run:
     angles: Array
     rates: Array
     failure: str = ""
+    __repr__ = one_line(times="s", angles="rad", failure="")
 
 
 def centred(rates: Array) -> Array:

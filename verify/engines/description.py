@@ -12,7 +12,7 @@ springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the 
 wavenumber k.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -23,7 +23,8 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.exact.torsion import shafts, torsion_hz
-from verify.problem.beam import Beam, in_plane
+from verify.formatting import one_line
+from verify.problem.beam import Beam, check_features, in_plane, with_attachments
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
 from verify.settings import WALLS, Theory
@@ -98,6 +99,7 @@ class RigidChain:
     in_space: bool = False
     mirrored: bool = False
     theory: Theory = "euler-bernoulli"
+    __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
     def count(self) -> int:
@@ -170,7 +172,7 @@ class RigidChain:
         """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
         if axis == "torsion":
             left, right = (support != "free" for support in self.beam.supports)
-            bodies = [(body.position, body.rotary_inertia) for body in self.beam.mass]
+            bodies = [(one.position, one.rotary_inertia) for one in self.beam.attached if one.massive]
             return torsion_hz(shafts(self.beam), (left, right), n_modes, bodies)
         from verify.analytic_modes import ExactModel
 
@@ -228,18 +230,18 @@ def rigid_chain(
 ) -> RigidChain:
     """`describe` with the chain `made` by `SegmentModel` in each plane."""
     check_type("beam", beam, Beam)
-    beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
+    check_features(beam, "a chain for an engine", ("section", "attached"), "give forces in the engine")
     check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
     check_integer("count", count, 2, MOST_LINKS)
     check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
     first, last = ((sum(FIXED[support]), FIXED[support].deflection) for support in beam.supports)
     if mirrored := first < last:
         beam = beam.mirrored()
-    turning = [mass.position for mass in beam.mass if mass.rotary_inertia]
+    turning = [one.position for one in beam.attached if one.rotary_inertia]
     # a spring behind an end is in series with the joints of a wall, order 4; others act on their link
-    behind = [s for s in beam.spring if s.rotational and s.position in {0.0, beam.length} - {*turning}]
+    behind = [s for s in beam.attached if s.rotational and s.position in {0.0, beam.length} - {*turning}]
     series = tuple(PointSpring(position=s.position, rotational=s.rotational) for s in behind)
-    unloaded, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
+    unloaded, rule = with_attachments(beam, spring=series), WALLS[wall]
     linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
     models = {a: made(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
@@ -252,7 +254,8 @@ def rigid_chain(
     masses = lengths * parts.masses_per_length * beam.mass_per_length
     bodies = [
         (link, m.position - chain.nodes[link], share * m.mass, share * m.rotary_inertia)
-        for m in beam.mass
+        for m in beam.attached
+        if m.massive
         for link, share in _shares(chain, m.position, m.rotary_inertia)
     ]
     if in_space:
@@ -278,7 +281,7 @@ def rigid_chain(
 
 def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spring]:
     """Springs between links and the ground; rotational ones at positions `behind` an end are in its joint."""
-    for spring in beam.spring:
+    for spring in beam.attached:
         turning = 0.0 if spring.position in behind else spring.rotational
         for link, share in _shares(chain, spring.position, turning):
             for rotational, k in ((False, spring.stiffness), (True, turning)):
@@ -286,7 +289,7 @@ def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spri
                     yield Spring(spring.position, link, rotational, share * k)
 
 
-def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: tuple[str, str]) -> Array:
+def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any], supports: Sequence[str]) -> Array:
     """Joints in torsion, (N + 1,), N m/rad, of links with GJ `twist` (N m^2) and polar inertia `spin` (kg m^2).
 
     A disk is at the centre of the inertia of its link and of the bodies on it: order 1 otherwise.

@@ -19,7 +19,7 @@ from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
 from verify.errors import InputError, shown
 from verify.files import whole
-from verify.problem.beam import Beam, in_plane
+from verify.problem.beam import Beam, check_features, in_plane
 from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ NOTICED = 0.1
 
 def _from_wall(line: Line, beam: Beam, name: str) -> Beam:
     """The beam from the wall of a line on. Raises InputError."""
-    beam.check_features("the comparison of a file", ("section", "mass"))
+    check_features(beam, "the comparison of a file", ("section", "bodies"))
     beam = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
         remedy = ": a first link without a joint must be a body" * (length < beam.length)

@@ -21,7 +21,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact.layout import BeamLayout, Station, layout_of
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, rigid_lines
 
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
 """Minor of the quantities that a support sets to zero; that of the others is 4 less this."""
@@ -160,13 +160,13 @@ def _carried(u: Minors, by: Carry, c: float, p: float, q: float) -> Minors:
     u0, u1, u2, u3, u4 = u
     one, both, g2, g3, h4, tip, guide, lift, turn, bend = by
     m, guide = p + c * q, q * guide
-    rest, ahead, back, corner = both + 2.0 * q * h4, g2 - m * h4, q * (g2 + m * h4), 2.0 * (c * g2 + h4)
+    outer, ahead, back, corner = both + 2.0 * q * h4, g2 - m * h4, q * (g2 + m * h4), 2.0 * (c * g2 + h4)
     return (
-        u0 * rest + u1 * tip + 2.0 * u2 * ahead + u3 * turn + u4 * corner,
+        u0 * outer + u1 * tip + 2.0 * u2 * ahead + u3 * turn + u4 * corner,
         u0 * bend + u1 * both + 2.0 * u2 * lift + 2.0 * u3 * (1.0 + p * c) * g2 + u4 * turn,
         u3 * lift + u4 * ahead - u0 * back - 2.0 * u1 * q * g3 + u2 * (one - 4.0 * q * h4),
         u3 * both + u4 * tip - u0 * guide - 2.0 * u1 * q * g2 - 4.0 * u2 * q * g3,
-        2.0 * u0 * q * (q * h4 - p * g2) - u1 * guide - 2.0 * u2 * back + u3 * bend + u4 * rest,
+        2.0 * u0 * q * (q * h4 - p * g2) - u1 * guide - 2.0 * u2 * back + u3 * bend + u4 * outer,
     )
 
 
@@ -305,10 +305,10 @@ def buckling_load(beam: Beam) -> float:
     The root of the characteristic equation at omega = 0 by Euler-Bernoulli theory, for a force of constant direction.
     """
     bare = replace(beam, tension=0.0)
-    if any(slope for _, slope in bare.rigid_lines):
+    if any(slope for _, slope in rigid_lines(bare)):
         return 0.0
     layout = layout_of(bare)
-    if bare.rigid_lines:  # a translation changes no energy: the left end is pinned
+    if rigid_lines(bare):  # a translation changes no energy: the left end is pinned
         left = {"free": "pinned", "guided": "clamped"}[layout.supports[0]]
         layout = replace(layout, supports=(left, layout.supports[1]))
     root = nth_root(lambda root: count_at(replace(layout, tension=-root * root), 0.0), 1)

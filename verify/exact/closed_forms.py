@@ -4,16 +4,15 @@ Roots of the Euler-Bernoulli frequency equations and mode shapes for every pair 
 theory, and the frequencies of a rod in extension and torsion.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import atan, exp, pi, sqrt
 
 import numpy as np
 
 from verify.arrays import Array
-from verify.errors import InputError
 from verify.exact.layout import HELD
 from verify.exact.torsion import torsion_constant
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
 
@@ -42,14 +41,10 @@ def check_mode(mode: int) -> None:
 
 def check_uniform(beam: Beam) -> None:
     """Raise InputError for a stepped beam and for attachments."""
-    if not beam.uniform:
-        raise InputError(
-            f"beam.{beam.features[0]}: a beam with it has no closed form, leave it out or use the analytic, fem or "
-            "segment model"
-        )
+    check_features(beam, "a closed form", remedy="use the analytic, fem or segment model")
 
 
-def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
+def wavenumber_length(supports: Sequence[str], mode: int) -> float:
     """beta_n L, dimensionless: (n + c) pi and a remainder by fixed-point iteration. Raises InputError for mode < 1."""
     check_mode(mode)
     c, rule, g = _ROOTS[frozenset(supports)]
@@ -63,7 +58,7 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
     return whole + remainder
 
 
-def unit_shapes(supports: tuple[str, str], betas: Array) -> Callable[[Array, int], Array]:
+def unit_shapes(supports: Sequence[str], betas: Array) -> Callable[[Array, int], Array]:
     """Euler-Bernoulli shapes at beta L (n,): (xi (m,), derivative by x / L) -> (n, m), mean square 1 over the length.
 
     Each is a sum of cos, sin, exp(-beta xi) and exp(-beta (1 - xi)), positive next to the left end.
@@ -77,7 +72,7 @@ def unit_shapes(supports: tuple[str, str], betas: Array) -> Callable[[Array, int
         return np.asarray(oscillating + left * np.exp(-betas[:, None] * xi) + right * np.exp(betas[:, None] * (xi - 1)))
 
     unit, ends = np.eye(4)[:, None].repeat(len(betas), axis=1), np.array([0.0, 1.0])
-    values = np.array([[waves(one, ends, d) for one in unit] for d in range(4)])  # (derivative, wave, n, end)
+    values = np.array([[waves(wave, ends, d) for wave in unit] for d in range(4)])  # (derivative, wave, n, end)
     conditions = [values[d, :, :, end] for end, support in enumerate(supports) for d in HELD[support]]
     factors = np.linalg.svd(np.array(conditions).transpose(2, 0, 1))[2][:, -1]  # the null vectors
     start, end = np.einsum("dwne,nw->edn", values, factors)
@@ -113,8 +108,8 @@ def rod_frequency_hz(beam: Beam, mode: int, motion: str, fixed: tuple[bool, bool
     InputError for a section that is not defined by shape, sizes and material.
     """
     check_uniform(beam)
-    own = beam.base_section
-    speed = sqrt(own.axial_stiffness / own.mass_per_length)
+    section = beam.base_section
+    speed = sqrt(section.axial_stiffness / section.mass_per_length)
     if motion == "torsion":
         ratio = 1.0
         if beam.width and beam.thickness:

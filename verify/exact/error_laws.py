@@ -4,7 +4,7 @@ The dispersion is exact for pinned and guided ends, where modes are sines; other
 """
 
 from cmath import tanh
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import cos, exp, pi, sin, sqrt
 
 import msgspec
@@ -19,7 +19,7 @@ _LAW_TO = 2.5
 _GREGORY = WALLS["gregory"].corrections
 
 
-def sine_fits(supports: tuple[str, str]) -> bool:
+def sine_fits(supports: Sequence[str]) -> bool:
     """Whether both ends are pinned or guided, where discrete modes are samples of a sine."""
     return set(supports) <= {"pinned", "guided"}
 
@@ -48,7 +48,7 @@ def _hermite_root(mu: float) -> float:
     return 2.0 * det / (b + sqrt(b * b - 4.0 * a * det))
 
 
-def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) -> float:
+def leading_error(model: str, supports: Sequence[str], mode: int, count: int) -> float:
     """The leading relative frequency error of a uniform beam of equal parts.
 
     +mu^4/1440 for Hermite elements; mu^4 (-1/1440 + c / (12 N)) for segments with Gregory's joints at their c

@@ -19,7 +19,7 @@ import msgspec
 
 from verify.problem.beam import Beam
 from verify.problem.device import Device
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.point_attachments import Attachment
 
 SAME_PLACE = 1e-12
 """Distance, relative to the beam's length, below which two positions are one station."""
@@ -58,7 +58,7 @@ class Station(NamedTuple):
 class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
     """Spans and stations of a beam."""
 
-    supports: tuple[str, str]
+    supports: Sequence[str]
     spans: tuple[UniformSpan, ...]
     """n spans from the left."""
     stations: tuple[Station, ...]
@@ -90,8 +90,8 @@ def layout_of(
     beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = (), devices: tuple[Device, ...] = ()
 ) -> BeamLayout:
     """The layout of a beam with devices by a theory; `also`: additional stations, m."""
-    attached: tuple[PointMass | PointSpring | Device, ...] = (*beam.attached, *devices)
-    cuts = [*(one.position for one in attached), *also]
+    attached: tuple[Attachment | Device, ...] = (*beam.attached, *devices)
+    cuts = [*(part.position for part in attached), *also]
     length, stiffness, mass = beam.length, beam.bending_stiffness, beam.mass_per_length
     spans, start = list[UniformSpan](), 0.0
     for piece in beam.pieces:
@@ -125,8 +125,8 @@ def layout_of(
         ("dashpot", across * rate),
         ("rotational_dashpot", around * rate),
     )
-    stations = [Station._make((*(getattr(one, n, 0.0) * scale for n, scale in scales), "free")) for one in attached]
-    return with_stations(layout, [(one.position / length, at) for one, at in zip(attached, stations, strict=True)])
+    stations = [Station._make((*(getattr(part, n, 0.0) * scale for n, scale in scales), "free")) for part in attached]
+    return with_stations(layout, [(part.position / length, at) for part, at in zip(attached, stations, strict=True)])
 
 
 def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) -> BeamLayout:
@@ -143,7 +143,7 @@ def with_stations(layout: BeamLayout, added: Sequence[tuple[float, Station]]) ->
     return msgspec.structs.replace(layout, supports=tuple(supports), stations=tuple(stations))
 
 
-def _both(one: str, other: str) -> str:
+def _both(first: str, second: str) -> str:
     """The support that prevents the motions of both supports."""
-    deflection, rotation = ({one, other} & {prevents, "clamped"} for prevents in ("pinned", "guided"))
+    deflection, rotation = ({first, second} & {prevents, "clamped"} for prevents in ("pinned", "guided"))
     return "clamped" if deflection and rotation else "pinned" if deflection else "guided" if rotation else "free"

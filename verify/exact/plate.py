@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features
 from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
@@ -33,8 +33,7 @@ def plate_error(beam: Beam, mode: int) -> float:
     upper bound within about 1e-6 (|nu| <= 0.4) otherwise. Raises InputError unless the beam is a uniform rectangular
     strip, at least `FLATNESS` times as wide as thick, and for a mode without a counterpart in the plate.
     """
-    if not beam.uniform:
-        raise InputError(f"beam.{beam.features[0]}: plate theory does not model it, leave it out")
+    check_features(beam, "plate theory")
     if beam.width is None or beam.thickness is None:
         raise InputError("beam.width is missing: plate theory needs a rectangle's width and thickness")
     if beam.width < FLATNESS * beam.thickness:
@@ -69,7 +68,7 @@ def stiffening(half_width: float, poissons_ratio: float) -> float:
 
 
 @lru_cache(maxsize=512)
-def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, mode: int) -> float:
+def ritz_error(supports: Sequence[str], aspect: float, poissons_ratio: float, mode: int) -> float:
     """Plate effect for any supports, by Ritz's method: an upper bound of the frequency. `aspect`: length over width.
 
     The energy is a sum of squares, (1 - nu^2) w_xx^2 + (w_yy + nu w_xx)^2 + 2 (1 - nu) w_xy^2 over D/2, so that the
@@ -96,7 +95,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     # across, even Legendre polynomials and two derivatives in orthonormal ones, (2 terms, terms)
     norm = np.sqrt(np.arange(2 * terms_across) + 0.5)
     derived = [legendre.legder(np.diag(norm)[:, ::2], order) for order in range(3)]
-    across = [sparse.csc_array(np.pad(own, ((0, len(norm) - len(own)), (0, 0))) / norm[:, None]) for own in derived]
+    across = [sparse.csc_array(np.pad(d, ((0, len(norm) - len(d)), (0, 0))) / norm[:, None]) for d in derived]
     w, w_xx, w_yy, w_xy = (
         aspect**j * sparse.kron(along[i], across[j], "csc") for i, j in ((0, 0), (2, 0), (0, 2), (1, 1))
     )
@@ -124,7 +123,7 @@ def ritz_error(supports: tuple[str, str], aspect: float, poissons_ratio: float, 
     return sqrt(energy / float(mass[best]) / narrow) - 1.0
 
 
-def _along(supports: tuple[str, str], n: int) -> "list[Any]":
+def _along(supports: Sequence[str], n: int) -> "list[Any]":
     """Sparse coefficients, (n, functions), of w, w', w'' in orthonormal Legendre polynomials on (-1, 1).
 
     Cubic Hermite functions of the free end displacements and slopes, and twice integrated polynomials from degree 2 on,

@@ -32,15 +32,15 @@ def shafts(beam: Beam) -> Array:
     made = []
     every = [merged(section, beam) for section in beam.section] or [set_fields(beam)]
     for fields, piece in zip(every, beam.pieces, strict=True):
-        if given := {"bending_stiffness", "mass_per_length", "rotary_inertia"} & set(fields):
+        if unsuitable := {"bending_stiffness", "mass_per_length", "rotary_inertia"} & set(fields):
             raise InputError(
-                f"beam.{min(given)}: a chain in space needs shape, sizes, E and rho in its place, give them"
+                f"beam.{min(unsuitable)}: a chain in space needs shape, sizes, E and rho in its place, give them"
             )
         shape = fields.get("shape", "rectangle")
         sizes = [fields[name] for name in SIZES[shape]]
-        one, other = (sizes[0], 0.5 * sizes[0]) if shape == "round" else sizes
-        constant = torsion_constant(shape, one, other)
-        polar = one * other * (one**2 + other**2) / 12.0 if shape == "rectangle" else constant
+        width, thickness = (sizes[0], 0.5 * sizes[0]) if shape == "round" else sizes
+        constant = torsion_constant(shape, width, thickness)
+        polar = width * thickness * (width**2 + thickness**2) / 12.0 if shape == "rectangle" else constant
         shear = fields["youngs_modulus"] / (2.0 * (1.0 + beam.poissons_ratio))
         made.append((piece.length, shear * constant, fields["density"] * polar))
     return np.array(made)

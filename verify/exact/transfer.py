@@ -96,10 +96,10 @@ def divide(layout: BeamLayout, omega2: Array, loss_factor: float = 0.0) -> Divis
     station_ends = offsets[:, None] + bounds
     dashed = any(station.dashpot or station.rotational_dashpot for station in layout.stations)
     over = np.tile(np.eye(4, dtype=complex if dashed else float), (n_pieces + len(omega2), 1, 1))
-    omega = np.sqrt(omega2)
-    for i, one in enumerate(layout.stations):
-        along = one.stiffness - omega2 * one.mass + (1j * omega * one.dashpot if dashed else 0.0)
-        around = one.rotational - omega2 * one.inertia + (1j * omega * one.rotational_dashpot if dashed else 0.0)
+    rate: Any = 1j * np.sqrt(omega2) if dashed else 0.0
+    for i, station in enumerate(layout.stations):
+        along = station.stiffness - omega2 * station.mass + rate * station.dashpot
+        around = station.rotational - omega2 * station.inertia + rate * station.rotational_dashpot
         over[station_ends[:, i], 3, 0] -= along * scale[:, 3, 0]
         over[station_ends[:, i], 2, 1] += around * scale[:, 2, 1]
     return Division(
@@ -156,11 +156,11 @@ def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]]
     held = np.array([division.station_ends[:, station] for station, _ in imposed], dtype=int).reshape(-1)
     over = division.over
     jumps = np.array(jumps, dtype=np.result_type(jumps, over, transfer, complex if imposed else float))
-    known = np.zeros_like(jumps)
+    prescribed = np.zeros_like(jumps)
     if imposed:
         over = over.copy()
-        known[held, 0] = np.repeat([value for _, value in imposed], len(division.omega2))[:, None]
-        jumps += over @ known
+        prescribed[held, 0] = np.repeat([value for _, value in imposed], len(division.omega2))[:, None]
+        jumps += over @ prescribed
         over[held, :, 0] = [0.0, 0.0, 0.0, 1.0]
     n_ends = len(over)
     carry = -transfer[division.span] @ over[left]
@@ -173,7 +173,7 @@ def solve(division: Division, jumps: Any, imposed: Sequence[tuple[int, complex]]
     matrix[middle - 2, 4 * held] = 0.0
     right = np.zeros((4 * n_ends, jumps.shape[2]), dtype=jumps.dtype)
     rows = 4 * left[:, None] + 2 + np.arange(4)
-    right[rows] = transfer[division.span] @ jumps[left] - known[left + 1]
+    right[rows] = transfer[division.span] @ jumps[left] - prescribed[left + 1]
     starts, ends = division.station_ends[:, 0], division.station_ends[:, -1]
     for row, (at_left, at_right) in enumerate(zip(*(HELD[support] for support in layout.supports), strict=True)):
         matrix[middle + row - at_left, 4 * starts + at_left] = 1.0
@@ -266,13 +266,13 @@ def modal_motion(layout: BeamLayout, betas: Array, numbers: Indices) -> Motion:
     states = states / np.sqrt(_modal_mass(division, states, states))[case, None, None]
     near = Motion(division, states).read(1e-3 / numbers, 0)[np.arange(len(betas)), 0, np.arange(len(betas))]
     signs = np.ones(len(betas))
-    for i, (value, one) in enumerate(zip(near, np.split(states[:, 0, 0], starts[1:]), strict=True)):
-        deflections = np.append(value, one)
+    for i, (value, at_ends) in enumerate(zip(near, np.split(states[:, 0, 0], starts[1:]), strict=True)):
+        deflections = np.append(value, at_ends)
         signs[i] = np.sign(deflections[abs(deflections) > 1e-9 * abs(deflections).max()][0])
     return Motion(division, states * signs[case, None, None])
 
 
-def _modal_mass(division: Division, one: Any, other: Any) -> Array:
+def _modal_mass(division: Division, first_states: Any, second_states: Any) -> Array:
     """Modal mass product of two motions in each case, (n_cases,), over rho A L, with attachments."""
     points, weights = np.polynomial.legendre.leggauss(12)
     powers = np.vander(0.5 * (points + 1.0), _TERMS, increasing=True)
@@ -284,7 +284,7 @@ def _modal_mass(division: Division, one: Any, other: Any) -> Array:
         if densities.any():
             values = [
                 powers @ np.array(list(_taylor(_starts(division, states, of), sums, products)))[:, :, 0]
-                for states in (one, other)
+                for states in (first_states, second_states)
             ]
             on_pieces = 0.5 * weights @ (values[0] * values[1]) * division.lengths
             on_pieces *= densities[division.span % len(densities)]
@@ -293,5 +293,5 @@ def _modal_mass(division: Division, one: Any, other: Any) -> Array:
             body = station.inertia if of else station.mass
             if body:
                 at = division.station_ends[:, i]
-                total = total + body * factor * one[at, of, 0] * other[at, of, 0]
+                total = total + body * factor * first_states[at, of, 0] * second_states[at, of, 0]
     return np.asarray(total)

@@ -24,9 +24,9 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.identify.fit import Model, Parameter, Values
 from verify.linear.numerics import gauss_rule
-from verify.problem.beam import Beam, PointForce
+from verify.problem.beam import Beam, PointForce, check_features
 from verify.problem.cross_section import set_fields
-from verify.problem.point_attachments import PointMass, PointSpring
+from verify.problem.point_attachments import PointSpring
 
 WALLS = ("wall_left", "wall_right")
 """Rotational stiffness of the walls, N m/rad."""
@@ -39,7 +39,7 @@ def known(beam: Beam, names: Sequence[str]) -> dict[str, Parameter]:
 
     Raises InputError for features whose derivatives are not modelled, and for a wall at an end without support.
     """
-    beam.check_features("identification", ("section", "mass", "spring"))
+    check_features(beam, "identification", ("section", "attached"))
     own, parameters = set_fields(beam), dict[str, Parameter]()
     rows = ("youngs_modulus", "bending_stiffness", "Pa"), ("density", "mass_per_length", "kg/m^3")
     for name, other, unit in rows:
@@ -89,10 +89,8 @@ def frequencies(beam: Beam, names: Sequence[str], modes: Array) -> Model:
         if own.attached:
             w, turn = (read(places)[index].T ** 2 for read in (solved.deflection, solved.slope))
         for one, across, around in zip(own.attached, w[2:], turn[2:], strict=True):
-            if isinstance(one, PointMass):
-                heavy += one.mass * across + one.rotary_inertia * around
-            else:
-                stiff += (one.stiffness * across + one.rotational * around) / square
+            heavy += one.mass * across + one.rotary_inertia * around
+            stiff += (one.stiffness * across + one.rotational * around) / square
         by = {wall: 0.5 * end / square for wall, end in zip(WALLS, turn[:2], strict=True) if wall in values}
         by["youngs_modulus"] = 0.5 * (1.0 - stiff) / values["youngs_modulus"]
         by["density"] = -0.5 * (1.0 - heavy) / values["density"]
@@ -131,10 +129,8 @@ def response(
         inertia = square * ((u.deflection(x) * v.deflection(x)) @ mass)
         work = h + inertia
         for one, across, around in zip(own.attached, w[3:], turn[3:], strict=True):
-            if isinstance(one, PointMass):
-                work = work + square * (one.mass * across + one.rotary_inertia * around)
-            else:
-                work = work - one.stiffness * across - one.rotational * around
+            work = work + square * (one.mass * across + one.rotary_inertia * around)
+            work = work - one.stiffness * across - one.rotational * around
         by = {wall: -end for wall, end in zip(WALLS, turn[:2], strict=True) if wall in values}
         by |= {"youngs_modulus": -work / values["youngs_modulus"], "density": inertia / values["density"]}
         by["loss_factor"] = -1j * work / (1.0 + 1j * own.loss_factor)

@@ -17,6 +17,7 @@ import numpy as np
 
 from verify.arrays import Array, Indices
 from verify.errors import InputError, near_name
+from verify.formatting import one_line
 
 Values: TypeAlias = dict[str, float]
 REJECTED, HARD, WIDER, ROUGH = 0.01, 0.1, 3.0, 0.1
@@ -106,6 +107,7 @@ class Fit:
     fitness: float | None
     whiteness: float | None
     rejected: tuple[str, ...]
+    __repr__ = one_line(noise="", freedom="", residuals="")
 
 
 class Problem:

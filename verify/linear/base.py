@@ -6,6 +6,8 @@ from dataclasses import fields
 from functools import cache
 from typing import Any, ClassVar, Literal, TypeAlias
 
+import numpy as np
+
 from verify.arrays import ComplexArray
 from verify.blas import one_blas_thread
 from verify.errors import InputError
@@ -13,7 +15,7 @@ from verify.linear.field import HarmonicField, wavenumber
 from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Kind, Loads, Numbers, loads_on
 from verify.linear.time_basis import TimeBasis
-from verify.problem.beam import Beam, PointLoad
+from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.problem.device import Device
 from verify.settings import DEFAULT, check_setting
 from verify.validation import as_tuple, check_integer, check_type
@@ -185,20 +187,22 @@ class BeamModel(ABC):
         self,
         forces: Kind | Sequence[Kind],
         devices: Devices,
+        frequency_hz: Numbers,
         kind: type[Kind] = PointLoad,  # type: ignore[assignment]
     ) -> tuple[tuple[Kind, ...], tuple[Device, ...]]:
-        """(loads, devices) as tuples. Raises InputError for a position off the beam, no effect, and no loads."""
+        """(loads, devices) as tuples. Raises InputError for no loads, no effect, and what takes one frequency alone."""
         acting, stationed = loads_on(self.beam, forces, kind), as_tuple("devices", devices, Device)
         for device in stationed:
-            device.check_on(self.beam)
+            device.check_on("device", self.beam.length, self.beam.supports)
         if not acting and not any(device.amplitude for device in stationed):
             raise InputError(
                 "no forces or displacements and no device with an amplitude: give a PointForce, or a device a force"
             )
+        if np.ndim(frequency_hz) and (stationed or kind is PointForce):
+            raise InputError("frequency_hz has several values: give one with devices or imposed displacements")
         return acting, stationed
 
     def _has_no(self, verb: str) -> InputError:
-        from verify.linear.registry import MODELS
-
-        able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
-        return InputError(f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose one of {able}")
+        return InputError(
+            f"model = {self.name!r} has no {verb.replace('_', ' ')}: choose analytic, segment or fem, which have all"
+        )

@@ -5,7 +5,7 @@ dimensionless: lengths in `unit`, stiffnesses in EI and masses in rho A unit.
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
 from math import pi, sqrt
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from msgspec import structs
 
-from verify.arrays import Array, ComplexArray
+from verify.arrays import Array, ComplexArray, Curve, Numeric, Sparse
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.linear.base import BeamModel, Devices
 from verify.linear.field import HarmonicField, acting_on, phasor, point_force
@@ -22,7 +22,7 @@ from verify.linear.modes import Modes
 from verify.linear.positions import Forces, Loads, Numbers, as_vector, frequencies_on, vector_on
 from verify.linear.system import FEW, LOST, SUPERPOSED, StructuralSystem, memory
 from verify.linear.time_basis import TimeBasis, check_supported
-from verify.problem.beam import PointForce, PointLoad, PointMoment
+from verify.problem.beam import PointForce, PointLoad, PointMoment, is_lossless, rigid_lines
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.validation import check_choice, check_number
@@ -47,26 +47,26 @@ class DiscreteModel(BeamModel):
         """Stiffness and mass, also beyond buckling; a cached property."""
 
     @abstractmethod
-    def load_rows(self, positions: Array, *, rotation: bool = False) -> Any:
+    def load_rows(self, positions: Array, *, rotation: bool = False) -> Sparse:
         """Weights of the unknowns for a unit force (or couple) at each position (m), sparse (n_positions, n).
 
         The row of a couple also gives the rotation at a device.
         """
 
-    def device_rows(self, positions: Array) -> Any:
+    def device_rows(self, positions: Array) -> Sparse:
         """Weights of the unknowns for deflection and force of devices at positions (m), sparse (n_positions, n)."""
         return self.load_rows(positions)
 
     @abstractmethod
-    def line(self, unknowns: Any) -> Callable[[Array, int], Any]:
+    def line(self, unknowns: Numeric) -> Curve:
         """Deflection for unknowns (n, k): (x in m, derivative) -> (k, len(x)), per metre^derivative."""
 
-    def rotation_line(self, unknowns: Any) -> Callable[[Array, int], Any] | None:
+    def rotation_line(self, unknowns: Numeric) -> Curve | None:
         """Section rotation for unknowns (n, k): (x in m, derivative) -> (k, len(x)); None where it is the slope."""
         return None
 
     @abstractmethod
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with losses of material and dashpots at omega (rad/s), (m,); real without losses."""
 
     @abstractmethod
@@ -114,7 +114,7 @@ class DiscreteModel(BeamModel):
     @property
     def _tilts(self) -> bool:
         """Whether the beam without its axial force has a rigid-body rotation."""
-        return any(b for _, b in structs.replace(self.beam, tension=0.0).rigid_lines)
+        return any(b for _, b in rigid_lines(structs.replace(self.beam, tension=0.0)))
 
     def check_memory(self, n_modes: int = 0) -> None:
         """Raise InputError for a system of more than 10 GB (`system.memory`), before it is built."""
@@ -187,7 +187,7 @@ class DiscreteModel(BeamModel):
             raise InputError(f"modes = {modes!r} is for model = analytic: {self.name} uses all its modes, leave it out")
         values, vectors = self.stable_system.all_modes
         ratios = None
-        if self.beam.loss_factor and self.beam.lossless:
+        if self.beam.loss_factor and is_lossless(self.beam):
             # half the loss factor times the lossy fraction of each modal stiffness
             energies = self.stable_system.strain(vectors) ** 2
             ratios = 0.5 * (np.imag(self.lossy_stiffness(1.0)) @ energies) / (self.stable_system.stiffness @ energies)
@@ -213,16 +213,14 @@ class DiscreteModel(BeamModel):
 
         Many frequencies: superposition of all modes, unless damping couples them.
         """
-        acting, stationed = self.check_stationed(forces, devices)
+        acting, stationed = self.check_stationed(forces, devices, frequency_hz)
         if (cut := self._cut_for((*acting, *stationed))) is not self:
             field = cut.harmonic(acting, frequency_hz, devices=stationed, modal_damping=modal_damping)
             return structs.replace(field, beam=self.beam)
         check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
         frequencies = frequencies_on(self.beam, frequency_hz)
-        if stationed and np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: give one frequency with devices")
-        own, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
-        loads, omega2 = self._loads(acting, own), (omegas / self._omega_unit) ** 2
+        blocked, omegas = tuple(device.own_force for device in stationed if device.amplitude), 2.0 * pi * frequencies
+        loads, omega2 = self._loads(acting, blocked), (omegas / self._omega_unit) ** 2
         impedances = self._impedances(stationed, float(omegas[0]))
         loss = self._shared_loss(omegas) if modal_damping or (self._many(omegas) and not impedances) else None
         if modal_damping and (loss is None or impedances):
@@ -243,20 +241,18 @@ class DiscreteModel(BeamModel):
                     raise self._at_resonance(float(frequencies[i])) from None
                 parts[:, i] = steady[0][:, 0], steady[1][:, 0]
         reactions = self._reactions(impedances, parts[:, 0].sum(axis=0))
-        return self._field(parts, frequency_hz, (*acting, *own, *reactions), stationed)
+        return self._field(parts, frequency_hz, (*acting, *blocked, *reactions), stationed)
 
     def imposed(self, displacements: Forces, frequency_hz: float, *, devices: Devices = ()) -> HarmonicField:
         """The steady field under imposed harmonic displacements, which are constraint rows of the system.
 
         Deflections of a chain have other weights than forces: the constraints are scaled to the deflections.
         """
-        drives, stationed = self.check_stationed(displacements, devices, PointForce)
+        drives, stationed = self.check_stationed(displacements, devices, frequency_hz, PointForce)
         if (cut := self._cut_for(stationed)) is not self:
             return structs.replace(cut.imposed(drives, frequency_hz, devices=stationed), beam=self.beam)
-        if np.ndim(frequency_hz):
-            raise InputError("frequency_hz has several values: give one frequency with imposed displacements")
         omega = 2.0 * pi * float(frequencies_on(self.beam, frequency_hz)[0])
-        own = tuple(device.own_force for device in stationed if device.amplitude)
+        blocked = tuple(device.own_force for device in stationed if device.amplitude)
         places, p = np.array([drive.position for drive in drives]), len(drives)
         rows = self.load_rows(places)
         if np.linalg.matrix_rank(rows.toarray()) < p:
@@ -267,7 +263,7 @@ class DiscreteModel(BeamModel):
         impedances = self._impedances(stationed, omega)
         try:
             bent, moved, forces = self.stable_system.steady(
-                np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), own)]),
+                np.hstack([np.zeros((self.n_unknowns, p)), self._loads((), blocked)]),
                 (omega / self._omega_unit) ** 2,
                 self.lossy_stiffness(omega),
                 [each[1:] for each in impedances],
@@ -282,7 +278,7 @@ class DiscreteModel(BeamModel):
         holding = [point_force(at, force * scale) for at, force in zip(places.tolist(), forces, strict=True)]
         reactions = self._reactions(impedances, bent + moved)
         return self._field(
-            np.stack([bent, moved])[:, None], float(frequency_hz), (*holding, *own, *reactions), stationed
+            np.stack([bent, moved])[:, None], float(frequency_hz), (*holding, *blocked, *reactions), stationed
         )
 
     def receptance(self, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
@@ -305,13 +301,13 @@ class DiscreteModel(BeamModel):
             result[i] = self.line(response)(read, 0)
         return result
 
-    def _loads(self, acting: Sequence[PointLoad], own: Sequence[PointForce]) -> ComplexArray:
+    def _loads(self, acting: Sequence[PointLoad], blocked: Sequence[PointForce]) -> ComplexArray:
         """Dimensionless loads of forces, moments and active devices, (n, 1)."""
         loads = np.zeros((self.n_unknowns, 1), dtype=complex)
         moments = [load for load in acting if isinstance(load, PointMoment)]
         forces = [load for load in acting if not isinstance(load, PointMoment)]
         turning = partial(self.load_rows, rotation=True)
-        each = ((self.load_rows, forces, 1.0), (turning, moments, self.unit), (self.device_rows, own, 1.0))
+        each = ((self.load_rows, forces, 1.0), (turning, moments, self.unit), (self.device_rows, blocked, 1.0))
         for rows, some, lever in each:
             if some:
                 weights = rows(np.array([load.position for load in some])).T
@@ -324,7 +320,7 @@ class DiscreteModel(BeamModel):
         Bodies place nodes, and elastic joints at the ends; elsewhere a moment is of order 1 or 2, a device of order 3.
         """
         beam, negligible = self.beam, 1e-15 * self.beam.mass_per_length * self.unit**3
-        bodies = {mass.position for mass in beam.mass if mass.rotary_inertia}
+        bodies = {attachment.position for attachment in beam.attached if attachment.rotary_inertia}
         missing = sorted(set(positions) - bodies)
         if not missing:
             return self
@@ -377,15 +373,15 @@ class DiscreteModel(BeamModel):
 
         Rigid-body motions have no curvature; that of their rounded sum with bending is rounding at low frequency.
         """
-        one, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
+        single, sampled = np.ndim(frequency_hz) == 0, np.linspace(0.0, self.beam.length, 33)
 
-        def joined(lines: Sequence[Any], shift: int) -> Callable[[Array, int], Any]:
+        def joined(lines: Sequence[Any], shift: int) -> Curve:
             checked = {0}
 
             def both(lines: Sequence[Any], x: Array, derivative: int, order: int) -> Any:
                 return sum(line(x, derivative) for line in (lines if order < 2 else lines[:1]))
 
-            def read(x: Array, derivative: int) -> Any:
+            def read(x: Array, derivative: int) -> Numeric:
                 if (order := derivative + shift) not in checked:
                     # rounding of deflections over the length of a part, measured as a few units of the last place
                     noise = abs(both(deflections, sampled, 0, order)).max(axis=1) * 8.0 * 2.0**-52 / self.unit**order
@@ -397,7 +393,7 @@ class DiscreteModel(BeamModel):
                         )
                     checked.add(order)
                 values = both(lines, x, derivative, order)
-                return values[0] if one else values
+                return np.asarray(values[0] if single else values)
 
             return read
 
@@ -412,7 +408,7 @@ class DiscreteModel(BeamModel):
             model=self.name,
             count=self.count,
             beam=self.beam,
-            frequency_hz=float(frequency_hz) if one else as_vector("frequency_hz", frequency_hz),
+            frequency_hz=float(frequency_hz) if single else as_vector("frequency_hz", frequency_hz),
             shapes=joined(deflections, 0),
             theory=self.theory,
             edges=self.edges,

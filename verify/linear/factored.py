@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Indices, Numeric, Sparse
 
 
-def sparse_rows(columns: Indices, values: Array, n: int) -> Any:
+def sparse_rows(columns: Indices, values: Array, n: int) -> Sparse:
     """Sparse (r, n) with values (r, c) at columns (r, c), without zeros and columns outside 0..n - 1."""
     from scipy.sparse import csr_array
 
@@ -29,17 +29,17 @@ def sparse_rows(columns: Indices, values: Array, n: int) -> Any:
 class FactoredSystem:
     """K = B^T diag(d) B and M over n unknowns, B a product of sparse factors."""
 
-    strain_factors: Sequence[Any]
+    strain_factors: Sequence[Sparse]
     """Sparse; B = factors[-1] @ ... @ factors[0]. The first factors are differences, exact in floating point."""
     stiffness: Array
     """d, (m,); negative where an axial compression releases energy."""
-    mass: Any
+    mass: Sparse
     """M, (n, n), sparse by columns."""
     rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(n, r), rigid-body motions, whose zero eigenvalues are excluded."""
     lower_bound: float = 0.0
     """Lower bound of all eigenvalues without `bodies`, the shift of Lanczos: a stiff foundation clusters them above."""
-    bodies: Any = None
+    bodies: Sparse | None = None
     """Sparse rows R (r, n) of attached bodies, R^T R a part of M: r eigenvalues may be below `lower_bound`."""
 
     @property
@@ -52,14 +52,14 @@ class FactoredSystem:
         """Number of rigid-body motions."""
         return int(self.rigid.shape[1]) if self.rigid.size else 0
 
-    def strain(self, vectors: Any) -> Any:
+    def strain(self, vectors: Numeric) -> Numeric:
         """B v, (m, k), of v (n, k)."""
         for factor in self.strain_factors:
             vectors = factor @ vectors
         return vectors
 
     @cached_property
-    def transposed(self) -> Any:
+    def transposed(self) -> Sparse:
         """B^T, (n, m), sparse by rows."""
         product = self.strain_factors[-1]
         for factor in reversed(self.strain_factors[:-1]):

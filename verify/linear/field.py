@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment
 from verify.problem.device import Device
@@ -42,6 +43,7 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Positions of moments and of devices against rotation, m, whose couples are not in `forces`."""
     conjugate: Callable[[PointLoad], complex] | None = None
     """`displacement`, single frequency; None where it is the deflection or the rotation of the section."""
+    __repr__ = one_line(model="", count="", frequency_hz="Hz", theory="")
 
     @property
     def omega(self) -> float:
@@ -116,13 +118,13 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
     lossy = 1.0 + 1j * beam.loss_factor
     if not (beam.tension or beam.foundation) and theory == "euler-bernoulli":
         return complex(sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant) * lossy**-0.25)
-    own, omega = beam.base_section, 2.0 * np.pi * frequency_hz
-    stiffness, load = own.bending_stiffness * lossy, own.mass_per_length * omega**2 - beam.foundation
-    inertia = (own.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
+    section, omega = beam.base_section, 2.0 * np.pi * frequency_hz
+    stiffness, load = section.bending_stiffness * lossy, section.mass_per_length * omega**2 - beam.foundation
+    inertia = (section.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
     # a k^4 + b k^2 = c
     a, b, c = stiffness, complex(beam.tension - inertia), complex(load)
-    if theory == "timoshenko" and own.shear_stiffness is not None:
-        shear = own.shear_stiffness * lossy
+    if theory == "timoshenko" and section.shear_stiffness is not None:
+        shear = section.shear_stiffness * lossy
         b, c = -(load * stiffness / shear + inertia), load * (1.0 - inertia / shear)
     k = complex(np.sqrt((-b + np.sqrt(b * b + 4.0 * a * c + 0j)) / (2.0 * a)))
     return k if k.imag <= 0.0 else k.conjugate()

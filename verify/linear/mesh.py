@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array
 from verify.errors import InputError
-from verify.problem.beam import SHORTEST_SECTION, Beam
+from verify.problem.beam import SHORTEST_SECTION, Beam, is_stepped
 from verify.problem.cross_section import Piece
 from verify.validation import check_number, check_type
 
@@ -57,7 +57,7 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     """
     pieces = pieces or beam.pieces
     check_division(beam, count, grading, len(pieces))
-    unit, equal = beam.length / count, len(pieces) == 1 and not beam.stepped and grading == 1.0
+    unit, equal = beam.length / count, len(pieces) == 1 and not is_stepped(beam) and grading == 1.0
     shares, lengths = part_counts([piece.length for piece in pieces], count), [np.ones(count)]
     if not equal:
         steps = [grading ** (np.arange(n) / max(n - 1, 1)) for n in shares]
@@ -77,12 +77,12 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     )
 
 
-def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
+def _ratios(base: Piece, pieces: tuple[Piece, ...]) -> Array:
     """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
 
     Without a shape E is 1, I is EI, and areas are NaN.
     """
-    every = (own, *pieces)
+    every = (base, *pieces)
     if any(p.youngs_modulus is None for p in every):
         table = np.array([(1.0, p.bending_stiffness, p.mass_per_length, np.nan) for p in every])
     else:
@@ -91,11 +91,11 @@ def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
 
 
 def cut_pieces(beam: Beam) -> tuple[Piece, ...]:
-    """The pieces of a beam, cut at masses and springs.
+    """The pieces of a beam, cut at attachments.
 
     No cut at an attachment closer than the shortest section to a step, an end or another attachment.
     """
-    places = sorted({*(mass.position for mass in beam.mass), *(spring.position for spring in beam.spring)})
+    places = sorted({attachment.position for attachment in beam.attached})
     near, pieces, start = SHORTEST_SECTION * beam.length, [], 0.0
     for piece in beam.pieces:
         left, end = start, start + piece.length

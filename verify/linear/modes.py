@@ -4,11 +4,15 @@ from collections.abc import Callable
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.numerics import zeros
 from verify.linear.positions import Numbers, positions_on, reshape_like
+
+EMPTY = np.empty(0)
 
 
 class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -28,20 +32,21 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n_modes,), ascending."""
     shapes: Callable[[Array, int], Array]
     """(x, derivative) -> (n_modes, len(x)); x in m."""
-    nodes: Array
+    nodes: Array = EMPTY
     """(n_nodes,), m: joints or element ends, both ends of the beam included; empty for the exact beam."""
     readings: dict[str, Callable[[], Array]] = msgspec.field(default_factory=dict)
     """Readings of the deflection at `nodes` by name, default first: () -> (n_modes, n_nodes)."""
-    points: Array
-    """(n_points,), m, evenly spaced positions at which the shape needs no interpolation."""
-    sampled: Callable[[], Array]
+    points: Array = EMPTY
+    """(n_points,), m, evenly spaced positions at which the shape needs no interpolation; empty for the exact beam."""
+    sampled: Callable[[], Array] = lambda: EMPTY
     """() -> deflection at `points`, (n_modes, n_points)."""
-    curvature_points: Array
+    curvature_points: Array = EMPTY
     """(n_curvatures,), m: positions of most accurate curvature."""
-    curvatures: Callable[[], Array]
+    curvatures: Callable[[], Array] = lambda: EMPTY
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); from the right at a step."""
     method: str = "closed form"
     """Method of the eigenvalues."""
+    __repr__ = one_line(model="", count="", frequencies_hz="Hz")
 
     @classmethod
     def of_shapes(cls, nodes: Array, shapes: Callable[[Array, int], Array], **fields: Any) -> "Modes":

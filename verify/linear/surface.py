@@ -36,7 +36,7 @@ def _uniform(beam: Beam, number: int) -> Beam:
 def surface_distance_at(beam: Beam, x: Numbers) -> Array:
     """Distance of the surface from the neutral line at x (m), m, of the shape of x. Raises InputError if unknown."""
     at, beams = piece_at(beam, x), [_uniform(beam, i) if beam.section else beam for i in range(len(beam.pieces))]
-    return np.asarray(np.array([one.surface_distance if i in at else np.nan for i, one in enumerate(beams)])[at])
+    return np.asarray(np.array([b.surface_distance if i in at else np.nan for i, b in enumerate(beams)])[at])
 
 
 class ContactRange(NamedTuple):

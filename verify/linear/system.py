@@ -8,12 +8,13 @@ augmented matrix (`factored`).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from verify.arrays import Array, ComplexArray, Indices
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.factored import FactoredSystem
 
 DENSE = 150
@@ -34,6 +35,10 @@ SUPERPOSED = 600
 """Largest number of unknowns for superposition of all modes at many frequencies."""
 
 
+Response: TypeAlias = tuple[Any, Any, Any]
+"""Elastic and rigid-body part (n, k) of a response, real or complex, and the forces (p, k) of constraints."""
+
+
 def uses_dense(n: int, k: int) -> bool:
     """Whether k modes of n unknowns are computed with dense matrices: few unknowns, or many of the modes."""
     return n <= DENSE or 3 * k > n
@@ -52,6 +57,8 @@ def _sums(terms: Array) -> Array:
 @dataclass(frozen=True, eq=False)
 class StructuralSystem(FactoredSystem):
     """Modes, harmonic response and buckling of a factored system."""
+
+    __repr__ = one_line(n="unknowns", n_rigid="rigid-body modes", stiffness="")
 
     def rayleigh_quotients(self, vectors: Array) -> Array:
         """Eigenvalues (k,) of vectors (n, k)."""
@@ -135,7 +142,7 @@ class StructuralSystem(FactoredSystem):
         # 1 / (omega^2 - shift) is negative below the shift
         sides = [(below, "SA"), (k - below, "LA")] if below else [(k, "LM")]
         try:
-            vectors = np.hstack([eigsh(inverse, one, which=end, **sought)[1] for one, end in sides if one > 0])
+            vectors = np.hstack([eigsh(inverse, number, which=end, **sought)[1] for number, end in sides if number > 0])
         except ArpackNoConvergence:
             raise InputError(
                 f"the lowest {k} of {self.n} modes do not converge: support the beam or lower count"
@@ -226,8 +233,8 @@ class StructuralSystem(FactoredSystem):
             return np.arange(self.n), np.zeros((self.n, 0))
         return np.delete(np.arange(self.n), self._grounded()), self.rigid
 
-    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Any]:
-        """Elastic and rigid-body part (n, k), forces (p, k) of K + devices - omega^2 M under p constraints `rows`.
+    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Response]:
+        """Elastic and rigid-body part (n, k), forces (p, k) of p constraints `rows`, of K + devices - omega^2 M.
 
         Iterative refinement: the factors lose soft supports beside bending, factored strains do not. Raises LinAlgError
         where the matrix is singular, and where the last correction of a response exceeds `LOST`.
@@ -261,27 +268,27 @@ class StructuralSystem(FactoredSystem):
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
 
-        def solve(load: Any, displacements: Any = None, most: float = LOST) -> Any:
-            still = np.zeros((0, load.shape[1])) if displacements is None else displacements
+        def solve(load: Any, displacements: Any = None, most: float = LOST) -> Response:
+            held = np.zeros((0, load.shape[1])) if displacements is None else displacements
 
-            def step(load: Any, strained: Any, still: Any) -> list[Any]:
+            def step(load: Any, strained: Any, held: Any) -> list[Any]:
                 right = np.concatenate(
-                    [np.zeros((m, load.shape[1])), (load - strained)[free], rigid.T @ load, small * still]
+                    [np.zeros((m, load.shape[1])), (load - strained)[free], rigid.T @ load, small * held]
                 )
                 y, bent = factor.solve(right.astype(d.dtype))[m:], np.zeros(load.shape, dtype=d.dtype)
                 bent[free] = y[:split]
                 return [bent, rigid @ y[split:n], small * y[n:]]
 
-            bent, moved, forces = step(load, 0.0, still)
+            bent, moved, forces = step(load, 0.0, held)
             lost = np.inf
             for _ in range(REFINED):
                 whole = bent + moved
-                rest = load + omega2 * (self.mass @ whole)
+                residual = load + omega2 * (self.mass @ whole)
                 for row, z in devices:
-                    rest = rest - z * (row.T @ (row @ whole))
+                    residual = residual - z * (row.T @ (row @ whole))
                 if rows is not None:
-                    rest, still = rest - rows.T @ forces, displacements - rows @ whole
-                more = step(rest, self.transposed @ (d[:, None] * self.strain(bent)), still)
+                    residual, held = residual - rows.T @ forces, displacements - rows @ whole
+                more = step(residual, self.transposed @ (d[:, None] * self.strain(bent)), held)
                 bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
                 # a correction is what the factors lose; the next is as much smaller
                 sizes = [
@@ -293,7 +300,7 @@ class StructuralSystem(FactoredSystem):
                     break
             if not lost <= most:
                 raise np.linalg.LinAlgError(lost)
-            return bent, moved, forces
+            return bent, moved, -forces
 
         return solve
 
@@ -305,7 +312,7 @@ class StructuralSystem(FactoredSystem):
         devices: Sequence[tuple[Any, complex]] = (),
         rows: Any = None,
         displacements: Any = None,
-    ) -> tuple[Any, Any, Any]:
+    ) -> Response:
         """The steady response to loads (n, k), (K + devices - omega^2 M) v = load, in an elastic and a rigid-body part.
 
         Both are (n, k); the third result are the forces (p, k) of constraints rows (p, n) @ v = displacements (p, k).
@@ -315,9 +322,7 @@ class StructuralSystem(FactoredSystem):
         """
         d, k = self.stiffness if stiffness is None else stiffness, loads.shape[1]
         if np.iscomplexobj(d) or any(complex(z).imag for _, z in devices):
-            solve = self._solver(omega2, np.asarray(d, dtype=complex), devices, rows)
-            bent, moved, forces = solve(loads, displacements)
-            return bent, moved, -forces
+            return self._solver(omega2, np.asarray(d, dtype=complex), devices, rows)(loads, displacements)
         solve = self._solver(omega2, d, [(row, complex(z).real) for row, z in devices], rows)
         nothing = None if rows is None else np.zeros((rows.shape[0], 1))
 
@@ -328,12 +333,11 @@ class StructuralSystem(FactoredSystem):
 
         self._check_resonance(respond, respond(np.random.default_rng(0).standard_normal((self.n, 1))), omega2)
         if not np.iscomplexobj(loads):
-            bent, moved, forces = solve(loads, displacements)
-            return bent, moved, -forces
+            return solve(loads, displacements)
         both = None if rows is None else np.hstack([displacements, np.zeros(displacements.shape)])
         parts = solve(np.hstack([loads.real, loads.imag]), both)
         bent, moved, forces = (part[:, :k] + 1j * part[:, k:] for part in parts)
-        return bent, moved, -forces
+        return bent, moved, forces
 
     def harmonic(
         self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()

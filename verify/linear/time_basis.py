@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointLoad, PointMoment
 
@@ -49,17 +50,18 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), damping ratio of each mode: half the beam's loss factor times the lossy fraction of the modal stiffness.
     None where all stiffness is lossy: half the loss factor for every mode."""
     turns: Callable[[], Array] | None = None
-    """() -> (n, bodies): rotation of the bodies of `beam.mass`; None where it is the slope of the shapes there."""
+    """() -> (n, attachments): rotation of `beam.attached`; None where it is the slope of the shapes there."""
+    __repr__ = one_line(model="", count="", omegas="rad/s", method="")
 
     def modal_load(self, load: PointLoad) -> Array:
         """Load of every mode under a force or moment of unit amplitude, (n,)."""
         return self.turning_loads(load.position) if isinstance(load, PointMoment) else self.loads(load.position)
 
-    def body_turns(self) -> Array:
-        """Rotation of the bodies of `beam.mass`, (n, bodies), 1/(sqrt(kg) m)."""
+    def attached_turns(self) -> Array:
+        """Rotation of `beam.attached`, (n, attachments), 1/(sqrt(kg) m)."""
         if self.turns is not None:
             return self.turns()
-        return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
+        return np.asarray(self.shapes(np.array([attachment.position for attachment in self.beam.attached]), 1))
 
     def deflection(self, x: Numbers) -> Array:
         """Shapes at x (m), (n, *shape of x), 1/sqrt(kg). Raises InputError off the beam."""

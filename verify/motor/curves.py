@@ -16,7 +16,7 @@ from verify.arrays import Array
 from verify.dynamics.result import Motion
 from verify.errors import InputError
 from verify.estimate import Estimate
-from verify.formatting import with_error, with_unit
+from verify.formatting import one_line, with_error, with_unit
 from verify.motor.steady_state import (
     BATCHES,
     NO_POWER,
@@ -125,6 +125,7 @@ class Transient(Struct, frozen=True, eq=False, kw_only=True):
     converged: bool
     """Whether the run reached its end with `error` up to 5 % of `speed` (or both up to 0.1 % of the crest speed), mean
     acceleration up to 1 % of mu N / mass and mean normal force within 10 % of the load."""
+    __repr__ = one_line(periods="", speed="m/s", error="m/s")
 
     @property
     def final_speed(self) -> Estimate:

@@ -11,6 +11,7 @@ from verify.arrays import Array, ComplexArray
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError
+from verify.formatting import one_line
 from verify.motor.steady_state import MotorCase
 
 ROUNDS = 12
@@ -29,6 +30,7 @@ class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
     """Largest change of a coordinate over the period, relative to its scale."""
     multipliers: ComplexArray
     """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)."""
+    __repr__ = one_line(residual="", largest_multiplier="")
 
     @property
     def largest_multiplier(self) -> float:

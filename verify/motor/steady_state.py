@@ -27,6 +27,7 @@ from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.estimate import Estimate
+from verify.formatting import one_line
 from verify.linear.surface import section_at
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.slider import Slider
@@ -153,6 +154,7 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     not_converged: tuple[Figure, ...]
     run: Motion
     """The last window, which another run can continue."""
+    __repr__ = one_line(speed="m/s", periods="", power="W")
 
     @property
     def power(self) -> float:

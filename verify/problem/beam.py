@@ -1,17 +1,18 @@
 """The beam: geometry, material, supports, attached masses and springs, point forces. Values, no numerics."""
 
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi, sqrt
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
-from msgspec.structs import asdict, replace
+from msgspec.structs import replace
 
+from verify.convert import entry_of
 from verify.errors import InputError, written
 from verify.problem.cross_section import CrossSection, Piece, Section, merged, piece_of, set_fields
-from verify.problem.point_attachments import PointMass, PointSpring
-from verify.problem.supports import FIXED, Support, check_free
-from verify.validation import Relative, check_number, check_position, unit, validate
+from verify.problem.point_attachments import Attachment, PointMass, PointSpring
+from verify.problem.supports import FIXED, Support
+from verify.validation import Items, Pair, Relative, check_number, unit, validate
 
 SHORTEST_SECTION = 1e-6  # shortest section relative to the beam's length; a shorter one may be a rounding residue
 
@@ -26,18 +27,18 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
 
     length: Annotated[float, unit("m", gt=0)]
     """L, m."""
-    supports: tuple[Support, Support] = ("pinned", "pinned")
+    supports: Pair[Support] = ("pinned", "pinned")
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: Annotated[float, unit("dimensionless", gt=-1, le=0.5)] = 0.33
     """nu, for Timoshenko theory and plate theory only."""
     loss_factor: Annotated[Relative, unit("0 means undamped", ge=0, lt=10)] = 0.0
     """eta of the harmonic field, E (1 + i eta). At a resonance it equals a modal damping ratio of eta/2 times the
     fraction of the modal stiffness that is due to bending and shear."""
-    section: tuple[Section, ...] = ()
+    section: Items[Section] = ()
     """Sections of a stepped beam from left to right; their lengths add up to `length`."""
-    mass: tuple[PointMass, ...] = ()
+    mass: Items[PointMass] = ()
     """Attached rigid bodies."""
-    spring: tuple[PointSpring, ...] = ()
+    spring: Items[PointSpring] = ()
     """Springs to the ground."""
     tension: Annotated[float, unit("N, negative is compression")] = 0.0
     """Axial force, N, along the undeformed beam; negative is compression."""
@@ -60,16 +61,14 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
                 )
         for piece in (self.base_section, *self.pieces):
             stiffness, mass = piece.bending_stiffness, piece.mass_per_length
-            if not all(1e-50 < one < 1e50 for one in (stiffness, mass, self.length)):  # or powers of them overflow
+            if not all(1e-50 < size < 1e50 for size in (stiffness, mass, self.length)):  # or powers of them overflow
                 raise InputError(
                     f"beam: its bending stiffness is {stiffness:.3g} N m^2, its mass per length {mass:.3g} kg/m, its "
                     f"length {self.length:.3g} m: give values between 1e-50 and 1e50, check their units"
                 )
-        for kind in ("mass", "spring"):
-            for i, one in enumerate(getattr(self, kind)):
-                (_, position), across, turning = asdict(one).items()
-                check_position(f"beam.{kind}[{i}].position", position, self.length)
-                check_free(f"beam.{kind}[{i}]", position, self.length, self.supports, dict([across]), dict([turning]))
+        for kind in attachment_kinds(type(self)):
+            for i, attachment in enumerate(getattr(self, kind)):
+                attachment.check_on(f"beam.{kind}[{i}]", self.length, self.supports)
 
     @cached_property
     def base_section(self) -> Piece:
@@ -80,8 +79,10 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
     def pieces(self) -> tuple[Piece, ...]:
         """Pieces of constant section from left to right; a uniform beam has one."""
         base, nu = self.base_section, self.poissons_ratio
-        sections = ((merged(one, self), one.length, f"beam.section[{i}]") for i, one in enumerate(self.section))
-        return tuple(piece_of(*one, nu, base) for one in sections) or (base,)
+        return tuple(
+            piece_of(merged(section, self), section.length, f"beam.section[{i}]", nu, base)
+            for i, section in enumerate(self.section)
+        ) or (base,)
 
     @property  # type: ignore[misc]
     def bending_stiffness(self) -> float:
@@ -94,70 +95,28 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return self.base_section.mass_per_length
 
     @cached_property
-    def stepped(self) -> bool:
-        """Whether a piece differs from the beam's own section."""
-        return any(replace(piece, length=self.length) != self.base_section for piece in self.pieces)
-
-    @property
-    def features(self) -> tuple[str, ...]:
-        """Names of the fields beyond a uniform beam on two supports: section, mass, spring, tension, foundation."""
-        others = tuple(name for name in ("mass", "spring", "tension", "foundation") if getattr(self, name))
-        return ("section",) * self.stepped + others
-
-    @property
-    def attached(self) -> tuple[PointMass | PointSpring, ...]:
-        """Masses and springs."""
-        return (*self.mass, *self.spring)
+    def attached(self) -> tuple[Attachment, ...]:
+        """All attachments: masses, then springs."""
+        return tuple(attachment for kind in attachment_kinds(type(self)) for attachment in getattr(self, kind))
 
     @property
     def uniform(self) -> bool:
         """Whether the beam has one section and no attachments, as closed forms assume."""
-        return not self.features
-
-    @property
-    def lossless(self) -> tuple[str, ...]:
-        """Names of the stiffness fields to which the loss factor does not apply: springs, tension, foundation."""
-        return tuple(name for name in self.features if name in ("spring", "tension", "foundation"))
-
-    def check_features(self, model: str, allowed: tuple[str, ...] = (), remedy: str = "use another model") -> None:
-        """Raise InputError for features that are not `allowed`; `model` is the subject of the message."""
-        for name in self.features:
-            if name not in allowed:
-                raise InputError(f"beam.{name}: {model} does not model it, leave it out or {remedy}")
-
-    @cached_property
-    def rigid_lines(self) -> tuple[tuple[float, float], ...]:
-        """Rigid-body motions w = a + b x, as (a, b) with x in m: none, one or two."""
-        ends = zip((0.0, self.length), self.supports, strict=True)
-        places = {at for at, support in ends if FIXED[support].deflection}
-        places |= {spring.position for spring in self.spring if spring.stiffness}
-        turned = any(FIXED[support].rotation for support in self.supports) or bool(self.tension)
-        turned |= any(spring.rotational for spring in self.spring)
-        if self.foundation or len(places) > 1 or (places and turned):
-            return ()
-        if places:
-            return ((-places.pop(), 1.0),)
-        return ((1.0, 0.0),) if turned else ((1.0, 0.0), (-0.5 * self.length, 1.0))
+        return not features(self)
 
     @property
     def rigid_motions(self) -> int:
         """Number of rigid-body motions: 0, 1 or 2."""
-        return len(self.rigid_lines)
+        return len(rigid_lines(self))
 
     def mirrored(self) -> "Beam":
         """The mirror image of the beam."""
         left, right = self.supports
-
-        def turned(one: Any) -> Any:
-            return replace(one, position=self.length - one.position)
-
-        return replace(
-            self,
-            supports=(right, left),
-            section=self.section[::-1],
-            mass=tuple(map(turned, self.mass[::-1])),
-            spring=tuple(map(turned, self.spring[::-1])),
-        )
+        turned = {
+            kind: tuple(replace(a, position=self.length - a.position) for a in reversed(getattr(self, kind)))
+            for kind in attachment_kinds(type(self))
+        }
+        return replace(self, supports=(right, left), section=self.section[::-1], **turned)
 
     @property
     def surface_distance(self) -> float:
@@ -176,12 +135,70 @@ class Beam(CrossSection, frozen=True, kw_only=True, forbid_unknown_fields=True, 
         return sqrt(self.bending_stiffness / self.mass_per_length)
 
 
+@cache
+def attachment_kinds(beam: type[Beam]) -> tuple[str, ...]:
+    """Names of the fields of a type of beam that are lists of attachments."""
+    fields = msgspec.structs.fields(beam)
+    return tuple(field.name for field in fields if issubclass(entry_of(field.type) or object, Attachment))
+
+
+def features(beam: Beam) -> tuple[str, ...]:
+    """Names of the fields beyond a uniform beam on two supports: section, attachments, tension, foundation."""
+    names = (*attachment_kinds(type(beam)), "tension", "foundation")
+    return ("section",) * is_stepped(beam) + tuple(name for name in names if getattr(beam, name))
+
+
+def is_stepped(beam: Beam) -> bool:
+    """Whether a piece differs from the beam's own section."""
+    return any(replace(piece, length=beam.length) != beam.base_section for piece in beam.pieces)
+
+
+def is_lossless(beam: Beam) -> bool:
+    """Whether the beam has stiffness to which the loss factor does not apply: springs, tension, foundation."""
+    return bool(beam.tension or beam.foundation or any(attachment.elastic for attachment in beam.attached))
+
+
+def check_features(beam: Beam, model: str, allowed: tuple[str, ...] = (), remedy: str = "use another model") -> None:
+    """Raise InputError for features that are not `allowed`; `model` is the subject of the message.
+
+    "attached" allows every attachment, "bodies" those without stiffness.
+    """
+    for name in features(beam):
+        group = ("attached", "bodies") if name in attachment_kinds(type(beam)) else (name,)
+        if "bodies" in group and any(attachment.elastic for attachment in getattr(beam, name)):
+            group = ("attached",)
+        if not set(group) & set(allowed):
+            raise InputError(f"beam.{name}: {model} does not model it, leave it out or {remedy}")
+
+
+def rigid_lines(beam: Beam) -> tuple[tuple[float, float], ...]:
+    """Rigid-body motions w = a + b x, as (a, b) with x in m: none, one or two."""
+    ends = zip((0.0, beam.length), beam.supports, strict=True)
+    places = {at for at, support in ends if FIXED[support].deflection}
+    places |= {attachment.position for attachment in beam.attached if attachment.stiffness}
+    turned = any(FIXED[support].rotation for support in beam.supports) or bool(beam.tension)
+    turned |= any(attachment.rotational for attachment in beam.attached)
+    if beam.foundation or len(places) > 1 or (places and turned):
+        return ()
+    if places:
+        return ((-places.pop(), 1.0),)
+    return ((1.0, 0.0),) if turned else ((1.0, 0.0), (-0.5 * beam.length, 1.0))
+
+
+def with_attachments(beam: Beam, mass: tuple[PointMass, ...] = (), spring: tuple[PointSpring, ...] = ()) -> Beam:
+    """The beam with these attachments alone."""
+    return replace(beam, **dict.fromkeys(attachment_kinds(type(beam)), ()) | {"mass": mass, "spring": spring})
+
+
 def in_plane(beam: Beam, axis: str) -> Beam:
     """The beam, for the axis "width" turned by 90 degrees about its own, without springs."""
     if axis != "width":
         return beam
     section = tuple(replace(part, width=part.thickness, thickness=part.width) for part in beam.section)
-    return replace(beam, width=beam.thickness, thickness=beam.width, section=section, spring=())
+    bodies = [attachment for attachment in beam.attached if attachment.massive]
+    masses = [PointMass(position=a.position, mass=a.mass, rotary_inertia=a.rotary_inertia) for a in bodies]
+    turned = replace(beam, width=beam.thickness, thickness=beam.width, section=section)
+    return with_attachments(turned, mass=tuple(masses))
 
 
 def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
@@ -195,7 +212,7 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
         )
 
 
-class PointLoad(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointLoad(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A harmonic load at a point, amplitude cos(omega t + phase): a `PointForce` or a `PointMoment`.
 
     Raises InputError for a value that is not finite and a negative position. Functions that take a beam and a load

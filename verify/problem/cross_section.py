@@ -16,7 +16,7 @@ ALL_SIZES = {size for sizes in SIZES.values() for size in sizes}
 Metres = Annotated[float, unit("m", gt=0)]
 
 
-class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class CrossSection(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """Input of a cross-section: shape, sizes and material, or its stiffness and mass. SI."""
 
     shape: Shape | None = None
@@ -93,13 +93,13 @@ def merged(section: Section, beam: CrossSection) -> dict[str, Any]:
 
     A section defined by stiffness or mass does not inherit the beam's modulus or density.
     """
-    own, whole = set_fields(section), set_fields(beam)
+    fields, inherited = set_fields(section), set_fields(beam)
     names = ["shape"]
-    if own.get("shape", whole.get("shape", "rectangle")) == whole.get("shape", "rectangle"):
-        names += [*SIZES[whole.get("shape", "rectangle")], "shear_coefficient"]
-    names += [] if "bending_stiffness" in own else ["youngs_modulus"]
-    names += [] if "mass_per_length" in own else ["density"]
-    return {name: whole[name] for name in names if name in whole} | own
+    if fields.get("shape", inherited.get("shape", "rectangle")) == inherited.get("shape", "rectangle"):
+        names += [*SIZES[inherited.get("shape", "rectangle")], "shear_coefficient"]
+    names += [] if "bending_stiffness" in fields else ["youngs_modulus"]
+    names += [] if "mass_per_length" in fields else ["density"]
+    return {name: inherited[name] for name in names if name in inherited} | fields
 
 
 def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base: Piece | None = None) -> Piece:
@@ -115,20 +115,20 @@ def piece_of(fields: dict[str, Any], length: float, where: str, nu: float, base:
         of_stiffness = not {*ALL_SIZES, "youngs_modulus", "density"} & set(fields)
         names = ("bending_stiffness", "mass_per_length", "shear_stiffness", "rotary_inertia") if of_stiffness else ()
         inherited = {name: getattr(base, name) for name in ("extreme_fibre", *names)}
-    own = {name: fields[name] for name in Piece.__struct_fields__ if name in fields and name != "youngs_modulus"}
+    direct = {name: fields[name] for name in Piece.__struct_fields__ if name in fields and name != "youngs_modulus"}
     for name, material in (("bending_stiffness", "youngs_modulus"), ("mass_per_length", "density")):
-        if name in own and name in made and abs(own[name] - made[name]) > 1e-12 * made[name]:
+        if name in direct and name in made and abs(direct[name] - made[name]) > 1e-12 * made[name]:
             raise InputError(
-                f"{where}.{name} = {own[name]!r} contradicts the shape and material, which make {made[name]!r}: give "
-                "one of the two, and extreme_fibre for the position of the surface"
+                f"{where}.{name} = {direct[name]!r} contradicts the shape and material, which make {made[name]!r}: "
+                "give one of the two, and extreme_fibre for the position of the surface"
             )
-        if name not in inherited | made | own:
+        if name not in inherited | made | direct:
             missing = next((field for field in (*SIZES[shape], material) if field not in fields), name)
             raise InputError(
                 f"{where}.{missing} is missing: a {shape} needs {', '.join(SIZES[shape])}, youngs_modulus and density; "
                 "or give bending_stiffness and mass_per_length"
             )
-    return Piece(length=length, **inherited | made | own)
+    return Piece(length=length, **inherited | made | direct)
 
 
 def _derived(fields: dict[str, Any], shape: str, nu: float, where: str) -> dict[str, float]:

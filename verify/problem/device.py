@@ -2,26 +2,22 @@
 
 from typing import Annotated
 
-import msgspec
-
 from verify.errors import InputError
-from verify.problem.beam import Beam, PointForce
-from verify.problem.supports import check_free
-from verify.validation import check_position, unit, validate
-
-ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
-TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
+from verify.problem.beam import PointForce
+from verify.problem.point_attachments import Attachment
+from verify.validation import unit
 
 
-class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Device(Attachment, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An actuator or absorber on a beam in its steady state: an impedance to the ground, and a force.
 
     It is part of the drive: harmonic fields model it; modes, motion in time and the nonlinear chain do not. Raises
     InputError for a negative or invalid value, or where all are zero.
     """
 
-    position: Annotated[float, unit("m", ge=0)]
-    """x, m from the left end."""
+    where = "device"
+    acting_across = ("stiffness", "mass", "dashpot", "amplitude")
+    acting_around = ("rotational", "rotary_inertia", "rotational_dashpot")
     stiffness: Annotated[float, unit("N/m", ge=0)] = 0.0
     """Stiffness against deflection, N/m."""
     mass: Annotated[float, unit("kg", ge=0)] = 0.0
@@ -38,23 +34,6 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Blocked force of an actuator, N."""
     phase_deg: Annotated[float, unit("degrees")] = 0.0
     """Phase of the blocked force, degrees (e^{+i omega t})."""
-
-    def __post_init__(self) -> None:
-        validate(self, "device")
-        if not (self.across or self.turning):
-            raise InputError(
-                f"device at position = {self.position!r} has no effect: give one of {', '.join((*ACROSS, *TURNING))}"
-            )
-
-    @property
-    def across(self) -> bool:
-        """Whether the device acts on the deflection."""
-        return any(getattr(self, name) for name in ACROSS)
-
-    @property
-    def turning(self) -> bool:
-        """Whether the device acts on the rotation."""
-        return any(getattr(self, name) for name in TURNING)
 
     @property
     def own_force(self) -> PointForce:
@@ -73,12 +52,6 @@ class Device(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         """Force over velocity, R + i (omega m - S / omega), kg/s."""
         return complex(self.dashpot, omega * self.mass - self.stiffness / omega)
 
-    def check_on(self, beam: Beam) -> None:
-        """Raise InputError for a position off the beam, or on a support where the device has no effect."""
-        check_position("device.position", self.position, beam.length)
-        across, turning = ({name: getattr(self, name) for name in names} for names in (ACROSS, TURNING))
-        check_free("device", self.position, beam.length, beam.supports, across, turning)
-
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:
     """The device of dashpot and spring, or of dashpot and mass, that has an impedance (kg/s) at omega (rad/s).
@@ -87,6 +60,6 @@ def of_impedance(position: float, impedance: complex, omega: float, *, turning: 
     """
     if impedance.real < 0.0:
         raise InputError(f"impedance = {impedance!r} is active, a dashpot is not: give a real part of at least 0")
-    spring, mass, dashpot = TURNING if turning else ("stiffness", "mass", "dashpot")
+    spring, mass, dashpot = Device.acting_around if turning else ("stiffness", "mass", "dashpot")
     reactive = {spring: -impedance.imag * omega} if impedance.imag < 0.0 else {mass: impedance.imag / omega}
     return Device(position=position, **{dashpot: impedance.real}, **reactive)

@@ -27,17 +27,17 @@ def beam_table(phrase: str) -> dict[str, Any]:
         raise InputError(f"beam = {shown(phrase)}: end it by two of {', '.join(SUPPORTS)}, as in '{EXAMPLE}'")
     parts = re.split(r"\s*[x×]\s*(?=[\d.]|round|tube)", body.replace(",", " ").strip())
     sizes = [re.fullmatch(rf"(round\s+|tube\s+)?({NUMBER})\s*(\S*)\s*(.*)", part) for part in parts]
-    found = [size for size in sizes if size]
-    shape = (found[1][1] or "rectangle").strip() if len(found) > 1 else ""
+    matches = [size for size in sizes if size]
+    shape = (matches[1][1] or "rectangle").strip() if len(matches) > 1 else ""
     names = ("length", *SIZES.get(shape, ()))
-    if len(found) < len(sizes) or len(names) != len(found) or any(size[4] for size in found[:-1]):
+    if len(matches) < len(sizes) or len(names) != len(matches) or any(size[4] for size in matches[:-1]):
         raise InputError(f"beam = {shown(phrase)}: write length, section and material as in '{EXAMPLE}'")
     table: dict[str, Any] = {"supports": [left, right]} | ({"shape": shape} if shape != "rectangle" else {})
     unit = ""
-    for name, size in zip(reversed(names), reversed(found), strict=True):
+    for name, size in zip(reversed(names), reversed(matches), strict=True):
         unit = size[3] or unit
         table[name] = in_si(f"{size[2]} {unit}", "m", f"beam.{name}")
-    return table | _material(found[-1][4])
+    return table | _material(matches[-1][4])
 
 
 def _material(text: str) -> dict[str, float]:

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.settings import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
-from verify.validation import check_number, check_position, unit, validate
+from verify.validation import Items, check_number, check_position, unit, validate
 
 GRAVITY = 9.81
 STEEPNESS = 1e4
@@ -16,7 +16,7 @@ STEEPNESS = 1e4
 OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}  # fields of one friction law only
 
 
-class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """Unilateral contact of slider and beam: compliant, or hard with restitution. Raises InputError."""
 
     stiffness: Annotated[float, unit("N/m", gt=0)] | None = None
@@ -35,13 +35,14 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def __post_init__(self) -> None:
         validate(self, "slider.contact")
         for name in ("stiffness", "tangential_stiffness"):
-            one, other = getattr(self, name), getattr(self, f"layer_{name}")
-            if one is not None and other is not None:
-                raise InputError(f"slider.contact.{name} = {one!r} and layer_{name} = {other!r}: give one")
+            of_foot, of_layer = getattr(self, name), getattr(self, f"layer_{name}")
+            if of_foot is not None and of_layer is not None:
+                raise InputError(f"slider.contact.{name} = {of_foot!r} and layer_{name} = {of_layer!r}: give one")
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
             if self.hard and (value := getattr(self, name)):
-                one = f"slider.contact.{name} = {value!r}"
-                raise InputError(f"{one} is for compliant contact: give slider.contact.stiffness too")
+                raise InputError(
+                    f"slider.contact.{name} = {value!r} is for compliant contact: give slider.contact.stiffness too"
+                )
         if self.restitution and not self.hard:
             raise InputError(
                 f"slider.contact.restitution = {self.restitution!r} is for hard contact: compliant contact has "
@@ -62,7 +63,7 @@ class Contact(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         return (self.tangential_stiffness or 0.0) + (self.layer_tangential_stiffness or 0.0) * length
 
 
-class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A rigid foot of a slider with [slider.contact]; its height and pitch are free. Raises InputError."""
 
     length: Annotated[float, unit("m", ge=0)] = 0.0
@@ -98,7 +99,7 @@ class Foot(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 ONE_POINT = (Foot(),)
 
 
-class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, repr_omit_defaults=True):
     """A point mass on the surface, driven by friction.
 
     Friction by the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or by Coulomb's law with stiction; N = m g +
@@ -135,7 +136,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     moving mass with convective terms. massless: none, as in the paper. Friction uses N = m g + preload in both."""
     contact: Contact | None = None
     """Unilateral contact; None: bilateral, the slider never loses contact."""
-    foot: tuple[Foot, ...] = ()
+    foot: Items[Foot] = ()
     """Feet of a slider with [slider.contact], rigidly connected along x; default: one point."""
     external_force: Annotated[float, unit("N along x")] = 0.0
     """External force along +x on a slider with [slider.contact], N; a braking load is negative."""
@@ -181,17 +182,10 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         if contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
             raise InputError("slider.foot: hard contact has one point, give slider.contact.stiffness or points = 1")
 
-    def check_bilateral(self) -> None:
-        """Raise InputError for a slider that may lose contact."""
-        if self.contact is not None:
-            raise InputError(
-                "slider.contact: this result is for a slider that never loses contact, leave it out or use [motor]"
-            )
-
     @property
     def feet(self) -> tuple[Foot, ...]:
         """The feet; by default one of one point."""
-        return self.foot or ONE_POINT
+        return tuple(self.foot) or ONE_POINT
 
     @property
     def steepness(self) -> float | None:

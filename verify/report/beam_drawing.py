@@ -6,6 +6,7 @@ Lengths along the beam are to scale. Heights are not; sections keep their order 
 from typing import Any
 
 from verify.formatting import with_unit
+from verify.problem.beam import Beam, attachment_kinds
 from verify.report.plotting import INK, MODEL_COLORS
 from verify.report.result import Figure
 from verify.settings import DRIVE_UNITS
@@ -29,10 +30,11 @@ def beam_figure(scene: Any, width: float = WIDTH) -> Figure:
     from matplotlib.figure import Figure as MatplotlibFigure
 
     sketch = _Sketch(scene, MatplotlibFigure().subplots(), width)
-    beam = scene.beam
+    beam: Beam = scene.beam
     kind = scene.drive.kind if scene.drive is not None else "force"
     what = "actuators" if kind in ELECTRICAL else f"{kind}s"
-    counts = {"sections": beam.section, "masses": beam.mass, "springs": beam.spring, what: scene.forces}
+    attached = {f"{name}{'e' * name.endswith('s')}s": getattr(beam, name) for name in attachment_kinds(type(beam))}
+    counts = {"sections": beam.section, **attached, what: scene.forces}
     counts |= {"devices": scene.devices, "shunts": scene.shunts, "sliders": (scene.slider,) if scene.slider else ()}
     there = "".join(f", {name}: {len(items)}" for name, items in counts.items() if items)
     return Figure(
@@ -112,7 +114,7 @@ class _Sketch:
     def load(self, scene: Any, x: float) -> float:
         """Height of a mass or slider that stands on the beam near x."""
         near = 0.25 * self.beam.length / (self.width - 2 * self.edge)
-        if any(abs(mass.position - x) < near for mass in self.beam.mass):
+        if any(abs(mass.position - x) < near for mass in self.beam.attached if mass.massive):
             return 0.24
         return 0.22 if scene.slider and abs(scene.slider.initial_position(self.beam) - x) < near else 0.0
 
@@ -180,7 +182,7 @@ class _Sketch:
         self.text(x, -half - 0.26, [support], down=True)
 
     def attached(self) -> None:
-        for spring in self.beam.spring:
+        for spring in self.beam.attached:
             x, y = self.at(spring.position), -self.half(spring.position)
             if spring.stiffness:
                 zigzag = [(x + (0.07 if i % 2 else -0.07), y - 0.1 - 0.045 * i) for i in range(6)]
@@ -191,7 +193,7 @@ class _Sketch:
             if spring.rotational:
                 self.line((x, 0.0), color=SPRING, width=0.0, marker="$↺$", markersize=16.0)
                 self.text(x, -y + 0.12, [f"{spring.rotational:.4g} N m/rad"])
-        for mass in self.beam.mass:
+        for mass in (attachment for attachment in self.beam.attached if attachment.massive):
             x, y = self.at(mass.position), self.half(mass.position)
             self.line((x, y + 0.11), width=0.0, marker="o", markersize=15.0)
             values = ((mass.mass, "kg"), (mass.rotary_inertia, "kg m²"))

@@ -12,6 +12,7 @@ from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
 from verify.errors import InputError, raise_all
+from verify.formatting import one_line
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device
 from verify.problem.slider import Slider
@@ -50,7 +51,7 @@ class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True)
         fields = {name: getattr(self, name) for name in Device.__struct_fields__}
         fields["position"] = _from_left("drive.device.position", self.position, self.measured_from, beam)
         device = Device(**fields)
-        device.check_on(beam)
+        device.check_on("device", beam.length, beam.supports)
         return device
 
 
@@ -238,6 +239,7 @@ class Scene(NamedBeam, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Acceptance criteria."""
     studies: dict[str, Any] = msgspec.field(default_factory=dict)
     """Studies by the names of their sections; in a file they stand at the top level."""
+    __repr__ = one_line(name="", title="", gate="", studies="")
 
     def __post_init__(self) -> None:
         raise_all(list(self._errors()))

@@ -7,11 +7,10 @@ attachment are corrected for its compliance at its own position (`docs/theory.md
 
 from collections.abc import Iterator, Sequence
 from math import ceil, floor
-from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Indices, Sparse
 from verify.linear.factored import sparse_rows
 from verify.problem.supports import FIXED
 from verify.segments.chain import Chain
@@ -42,7 +41,7 @@ def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
     return links, np.where(abs(places - nodes[links]) < 1e-9, 0.0, along)
 
 
-def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
+def joint_weights(chain: Chain, positions: Array, rule: str) -> Sparse:
     """Weights of joints 0..N for a force or a reading at positions (m), sparse (p, N + 1); assumes equal links.
 
     The chain continues by odd reflection at a pinned end and by even reflection at a guided one; at free and clamped
@@ -62,7 +61,7 @@ def joint_weights(chain: Chain, positions: Array, rule: str) -> Any:
     return sparse_rows(columns, weights, n + 1)
 
 
-def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
+def rotation_weights(chain: Chain, positions: Array, rule: str) -> Sparse:
     """Weights of link rotations for a couple or a reading at positions (m), sparse (p, N), without end correction.
 
     Lever rule: the link, at a joint the mean of both links. Reciprocal rule: linear between the links' middles in the
@@ -85,7 +84,7 @@ def rotation_weights(chain: Chain, positions: Array, rule: str) -> Any:
     return sparse_rows(np.stack([before, links], axis=1), np.stack([1.0 - share, share], axis=1), n)
 
 
-def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Any, Any]:
+def attachment_weights(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Sparse, Sparse]:
     """Weights of joint positions, sparse (p, N + 1), and link rotations, (p, N), for attachments at distinct positions.
 
     The reciprocal rule reproduces the self and mutual compliances of attachments on the beam, except between unequal

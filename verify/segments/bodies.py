@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from verify.arrays import Array, BoolArray
+from verify.arrays import Array, BoolArray, Sparse
 from verify.problem.beam import Beam
 from verify.segments.chain import Motions, selection
 
@@ -35,14 +35,12 @@ class Attached:
         """Attached masses and springs, summed at equal positions."""
         mass, stiffness = self.beam.mass_per_length * self.unit, self.beam.bending_stiffness / self.unit**3
         square, bodies = self.unit**2, dict[float, Body]()
-        each = [(m.position, (m.mass / mass, m.rotary_inertia / (mass * square), 0.0, 0.0)) for m in self.beam.mass]
-        each += [
-            (s.position, (0.0, 0.0, s.stiffness / stiffness, s.rotational / (stiffness * square)))
-            for s in self.beam.spring
-        ]
-        for at, values in each:
-            before = bodies.get(at, Body(at, {0.0: 0, self.beam.length: 1}.get(at) if self.rule != "lever" else None))
-            bodies[at] = Body(*before[:2], *(a + b for a, b in zip(before[2:], values, strict=True)))
+        units, ends = (mass, mass * square, stiffness, stiffness * square), {0.0: 0, self.beam.length: 1}
+        for attachment in self.beam.attached:
+            body = bodies.get(at := attachment.position, Body(at, ends.get(at) if self.rule != "lever" else None))
+            values = (attachment.mass, attachment.rotary_inertia, attachment.stiffness, attachment.rotational)
+            sums = (a + value / size for a, value, size in zip(body[2:], values, units, strict=True))
+            bodies[at] = Body(*body[:2], *sums)
         return tuple(bodies.values())
 
     @cached_property
@@ -67,7 +65,7 @@ class Attached:
         """Whether each body has a mass, (bodies,)."""
         return np.array([body.mass > 0.0 for body in self.bodies], dtype=bool)
 
-    def rotations(self, weights: Any, motions: Motions) -> Any:
+    def rotations(self, weights: Sparse, motions: Motions) -> Sparse:
         """Rotations of the bodies as rows over (link rotations, unknowns), sparse (bodies, N + n)."""
         from scipy.sparse import diags_array, hstack
 
@@ -76,13 +74,15 @@ class Attached:
         ends = selection(at, [self.bodies[i].end for i in at], (len(beyond), 2))
         return hstack([diags_array(1.0 - beyond) @ weights, ends @ motions.end_rotations], format="csr")
 
-    def deflections(self, weights: Any, motions: Motions, compliances: Array) -> Any:
+    def deflections(self, weights: Sparse, motions: Motions, compliances: Array) -> Sparse:
         """Deflections of the bodies including slip (compliances `compliances`, (bodies,)), sparse (bodies, n)."""
         slipping = np.flatnonzero((compliances > 0.0) & self.massive)
-        own = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
-        return weights @ motions.positions + own
+        slip = selection(slipping, np.arange(len(slipping)), (len(compliances), len(slipping))) @ motions.body_slips
+        return weights @ motions.positions + slip
 
-    def energies(self, deflections: Any, rotations: Any, motions: Motions, compliances: Array) -> tuple[list[Any], Any]:
+    def energies(
+        self, deflections: Sparse, rotations: Sparse, motions: Motions, compliances: Array
+    ) -> tuple[list[Any], Any]:
         """(strain rows over (link rotations, unknowns) with stiffnesses, rows R with R^T R the mass of the bodies).
 
         A massless spring is in series with its slip, at an end with the joint, so that no unknown is massless.

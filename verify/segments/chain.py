@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, Indices, Sparse
 from verify.linear.factored import sparse_rows
 from verify.problem.supports import FIXED
 
@@ -19,7 +19,7 @@ from verify.problem.supports import FIXED
 class Chain:
     """N rigid links and N + 1 joints; joints at pinned and free ends have no spring."""
 
-    supports: tuple[str, str]
+    supports: Sequence[str]
     unit: float  # unit of length, m
     lengths: Array  # (N,), lengths of the links
     compliances: Array  # (N + 1,), 1/k of joints 0..N; infinite without a spring
@@ -81,11 +81,11 @@ def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array,
     The kinetic energy of a link is half of m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2.
     """
     spin = inertias / lengths**2
-    own, shared = masses / 4.0 + spin, masses / 4.0 - spin
-    return np.append(own, 0.0) + np.append(0.0, own), shared
+    diagonal, shared = masses / 4.0 + spin, masses / 4.0 - spin
+    return np.append(diagonal, 0.0) + np.append(0.0, diagonal), shared
 
 
-def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
+def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Sparse:
     """Sparse matrix; row i has the i-th value of each diagonal in columns i + offset, i + offset + 1, ...
 
     Columns outside the shape are dropped.
@@ -94,7 +94,7 @@ def banded(shape: tuple[int, int], offset: int, *diagonals: Any) -> Any:
     return sparse_rows(columns, np.stack([np.broadcast_to(d, shape[0]) for d in diagonals], axis=1), shape[1])
 
 
-def selection(rows: Any, columns: Any, shape: tuple[int, int], values: Any = 1.0) -> Any:
+def selection(rows: Any, columns: Any, shape: tuple[int, int], values: Any = 1.0) -> Sparse:
     """Sparse matrix with one value in each of the ascending rows."""
     from scipy.sparse import csr_array
 
@@ -102,7 +102,7 @@ def selection(rows: Any, columns: Any, shape: tuple[int, int], values: Any = 1.0
     return csr_array((np.broadcast_to(values, np.shape(rows)).astype(float), columns, starts), shape)
 
 
-def squares(rows: Any, weights: Array) -> Any:
+def squares(rows: Sparse, weights: Array) -> Sparse:
     """R^T diag(weights) R of sparse rows (r, n)."""
     return rows.T @ banded((len(weights),) * 2, 0, weights) @ rows
 
@@ -144,18 +144,18 @@ class Motions:
         return len(self.free) + len(self.rotating) + self.n_slips
 
     @cached_property
-    def positions(self) -> Any:
+    def positions(self) -> Sparse:
         """Positions of joints 0..N, sparse (N + 1, n)."""
         return selection(self.free, np.arange(len(self.free)), (self.chain.n_segments + 1, self.n))
 
     @cached_property
-    def end_rotations(self) -> Any:
+    def end_rotations(self) -> Sparse:
         """Rotations behind the end joints, sparse (2, n); zero without a body."""
         first = len(self.free)
         return selection(self.rotating, first + np.arange(len(self.rotating)), (2, self.n))
 
     @cached_property
-    def joint_slips(self) -> Any:
+    def joint_slips(self) -> Sparse:
         """Offset of the right link from the left link at each joint, sparse (N + 1, n)."""
         first = len(self.free) + len(self.rotating)
         columns = first + np.arange(len(self.sliding))
@@ -163,13 +163,13 @@ class Motions:
         return selection(self.sliding, columns, shape, np.sqrt(self.slips[self.sliding]))
 
     @cached_property
-    def body_slips(self) -> Any:
+    def body_slips(self) -> Sparse:
         """Slips of the bodies that slip, sparse (bodies, n)."""
         i, roots = np.arange(len(self.body_compliances)), np.sqrt(self.body_compliances)
         return selection(i, self.n - len(i) + i, (len(i), self.n), roots)
 
     @cached_property
-    def factors(self) -> tuple[Any, Any]:
+    def factors(self) -> tuple[Sparse, Sparse]:
         """Sparse factors v -> (position differences, v) -> (link rotations, v).
 
         The first factor has entries 1 and -1: differences are exact.
@@ -177,10 +177,10 @@ class Motions:
         from scipy.sparse import block_array, vstack
 
         n, lengths, shares = self.chain.n_segments, self.chain.lengths, self._shares
-        own = banded((self.n, self.n), 0, 1.0)
+        identity = banded((self.n, self.n), 0, 1.0)
         slips = -banded((n, n + 1), 0, shares[:-1] / lengths, shares[1:] / lengths) @ self.joint_slips
-        scale = block_array([[banded((n, n), 0, 1.0 / lengths), slips], [None, own]], format="csr")
-        return vstack([banded((n, n + 1), 0, -1.0, 1.0) @ self.positions, own], format="csr"), scale
+        scale = block_array([[banded((n, n), 0, 1.0 / lengths), slips], [None, identity]], format="csr")
+        return vstack([banded((n, n + 1), 0, -1.0, 1.0) @ self.positions, identity], format="csr"), scale
 
     @property
     def _shares(self) -> Array:
@@ -190,24 +190,24 @@ class Motions:
         return shares
 
     @cached_property
-    def both(self) -> Any:
+    def both(self) -> Sparse:
         """The map v -> (link rotations, v), sparse (N + n, n)."""
         return self.factors[1] @ self.factors[0]
 
     @property
-    def rotations(self) -> Any:
+    def rotations(self) -> Sparse:
         """Rotations of the links, sparse (N, n)."""
         return self.both[: self.chain.n_segments]
 
     @cached_property
-    def middles(self) -> Any:
+    def middles(self) -> Sparse:
         """Positions of the links' middles, sparse (N, n)."""
         n, shares = self.chain.n_segments, self._shares
         middles = banded((n, n + 1), 0, 0.5, 0.5) @ self.positions
         return middles + banded((n, n + 1), 0, 0.5 * shares[:-1], -0.5 * shares[1:]) @ self.joint_slips
 
     @cached_property
-    def angles_of(self) -> Any:
+    def angles_of(self) -> Sparse:
         """Joint angles 0..N as rows over (link rotations, v), sparse (N + 1, N + n); at an end to the body behind."""
         from scipy.sparse import hstack
 
@@ -216,7 +216,7 @@ class Motions:
         return hstack([banded((n + 1, n), -1, -1.0, 1.0), ends], format="csr")
 
 
-def link_mass(motions: Motions) -> Any:
+def link_mass(motions: Motions) -> Sparse:
     """Mass matrix of the links, masses at the middles and inertias, sparse (n, n)."""
     chain, first, free = motions.chain, int(motions.chain.supported[0]), len(motions.free)
     if len(motions.sliding):
@@ -228,7 +228,7 @@ def link_mass(motions: Motions) -> Any:
     return banded((motions.n, motions.n), -1, coupled[:-1], values, coupled[1:]).T
 
 
-def plain_factors(chain: Chain) -> tuple[Any, Any]:
+def plain_factors(chain: Chain) -> tuple[Sparse, Sparse]:
     """Sparse factors v -> position differences -> joint angles of a chain without attachments and slip.
 
     Equal to the product of the factors of `Motions`, in a tenth of the time.

@@ -24,8 +24,8 @@ def order_of(beam: "Beam", *, wall: str, joints: str, grading: float, theory: st
     thick, sheared = theory != "euler-bernoulli", theory == "timoshenko"
     ends = (0.0, beam.length)
     tips = [end for end, support in zip(ends, beam.supports, strict=True) if support == "free"]
-    lateral = [m.position for m in beam.mass if m.mass] + [s.position for s in beam.spring if s.stiffness]
-    rotational = [m.position for m in beam.mass if m.rotary_inertia] + [s.position for s in beam.spring if s.rotational]
+    lateral = [attachment.position for attachment in beam.attached if attachment.across]
+    rotational = [attachment.position for attachment in beam.attached if attachment.turning]
     inside = any(x not in tips for x in lateral)
     elastic = not lever and any(x in ends for x in rotational)
     moments, steps = _steps(beam, "second_moment"), _steps(beam) if graded else _steps(beam, "bending_stiffness")

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Curve, Numeric
 from verify.segments.chain import Chain, at_joints
 
 
-def corrected_reading(chain: Chain, joints: Any, rotations: Any = None, shear_change: Any = 0.0) -> Any:
+def corrected_reading(
+    chain: Chain, joints: Numeric, rotations: Numeric | None = None, shear_change: Numeric | float = 0.0
+) -> Numeric:
     """The beam's deflection y + l^2 y''/12 at joints 0..N, (k, N + 1), from joint positions y: order 4.
 
     l^2 y'' is the joint angle, times (l_i^2 + l_j^2)/2 over the mean length for unequal links. With shear the angle is
@@ -30,7 +32,7 @@ def corrected_reading(chain: Chain, joints: Any, rotations: Any = None, shear_ch
     return joints + squares * (curvatures - shear_change)
 
 
-def spline(chain: Chain, values: Any, *, slipping: bool = False) -> Any:
+def spline(chain: Chain, values: Numeric, *, slipping: bool = False) -> Any:
     """Cubic C2 spline through a value at every joint, (k, N + 1), over x in m.
 
     End conditions: zero second derivative at pinned and free ends, zero slope at walls, not-a-knot at elastic ends and
@@ -40,20 +42,20 @@ def spline(chain: Chain, values: Any, *, slipping: bool = False) -> Any:
 
     ends = ["clamped" if wall else "natural" for wall in chain.walls]
     for end, (support, elastic) in enumerate(zip(chain.supports, chain.elastic, strict=True)):
-        known = support == "guided" or (support == "pinned" and not elastic)
-        if (any(chain.elastic) or slipping) and not known:
+        by_symmetry = support == "guided" or (support == "pinned" and not elastic)
+        if (any(chain.elastic) or slipping) and not by_symmetry:
             ends[end] = "not-a-knot"
     return CubicSpline(chain.nodes, values, axis=1, bc_type=tuple(ends))
 
 
-def line_through(chain: Chain, values: Callable[[], Any], *, slipping: bool = False) -> Callable[[Array, int], Any]:
+def line_through(chain: Chain, values: Callable[[], Numeric], *, slipping: bool = False) -> Curve:
     """(x in m, derivative) -> `spline` or its derivative at x, (k, len(x)); built on first use."""
     nodes, made = chain.nodes, cache(lambda: spline(chain, values(), slipping=slipping))
     # zero deflection of a half segment that is welded to a wall
     return lambda x, derivative: made()(np.clip(x, nodes[0], nodes[-1]), derivative)
 
 
-def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool = True) -> Callable[[Array, int], Any]:
+def rigid_links(chain: Chain, middles: Numeric, rotations: Numeric, *, both_sides: bool = True) -> Curve:
     """(x in m, derivative) -> deflection of the straight links at x, (k, len(x)).
 
     `middles` and `rotations` are (k, N), m and rad. At a joint the mean of both links, or the right link alone.
@@ -61,7 +63,7 @@ def rigid_links(chain: Chain, middles: Any, rotations: Any, *, both_sides: bool 
     nodes, slack = chain.nodes, 1e-9 * chain.unit
     centres = 0.5 * (nodes[1:] + nodes[:-1])
 
-    def read(x: Array, derivative: int) -> Any:
+    def read(x: Array, derivative: int) -> Numeric:
         sides = (-slack, slack) if both_sides else (0.0, 0.0)
         links = [np.clip(np.searchsorted(nodes, x + s, side="right") - 1, 0, chain.n_segments - 1) for s in sides]
         if derivative > 1:

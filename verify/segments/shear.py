@@ -5,12 +5,11 @@ compliances are of M^2/EI. The links' rotary inertia rho I l theta^2 acts like a
 unless "tensioned" joints subtract inertia where they bend and slip: order 4 (`docs/theory.md`, "Finite segments").
 """
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Curve, Numeric
 from verify.segments.bodies import Body
 from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
@@ -58,15 +57,16 @@ def attachment_compliance(chain: Chain, softness: Array, position: float, weight
     return float(softness[nearest] * max(doubled * lacking, _LEAST))
 
 
-def joint_inertias(thick: Array, factors: Array, own: Array, wall: str) -> Array:
+def joint_inertias(thick: Array, factors: Array, fraction: Array, wall: str) -> Array:
     """Rotary inertia rho I l/12 subtracted from that of the links, `thick` (N,), at bending joints 0..N, (N + 1,).
 
-    It corresponds to the correction T l/12 of a tensioned joint. `factors` are the wall factors, `own` the fraction of
+    It corresponds to the correction T l/12 of a tensioned joint. `factors` are the wall factors, `fraction` the part of
     a joint's angle that is in the beam and not in a spring behind the end.
     """
     inertias, weights = _harmonic_means(thick) / 12.0, factors.copy()
     weights[[0, -1]] += tension_excess(wall) * ~np.isin(factors[[0, -1]], (0.5, np.inf))
-    return np.divide(inertias * weights * own**2, factors**2, out=np.zeros(len(inertias)), where=np.isfinite(factors))
+    weights *= fraction**2
+    return np.divide(inertias * weights, factors**2, out=np.zeros(len(inertias)), where=np.isfinite(factors))
 
 
 def slip_masses(chain: Chain, slips: Array) -> Array:
@@ -85,14 +85,15 @@ def _harmonic_means(links: Array) -> Array:
     return np.concatenate([links[:1], inner, links[-1:]])
 
 
-def shear_change(motions: Motions, softness: Array, unknowns: Any) -> Any:
+def shear_change(motions: Motions, softness: Array, unknowns: Numeric) -> Numeric:
     """Derivative gamma' of the shear angle at joints 0..N, (k, N + 1), per unit length.
 
     From the shear force; independent of wall factors.
     """
     chain, slipping, angles = motions.chain, motions.sliding, motions.joint_slips @ unknowns
     angles[slipping] *= (softness[slipping] / motions.slips[slipping])[:, None]
-    return np.gradient(angles / chain.spans[:, None], chain.nodes / chain.unit, axis=0, edge_order=2).T
+    change = np.gradient(angles / chain.spans[:, None], chain.nodes / chain.unit, axis=0, edge_order=2)
+    return np.asarray(change.T)
 
 
 def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: Array, values: Array) -> Array:
@@ -104,13 +105,11 @@ def modal_shear_change(chain: Chain, shears: Array, foundation: float, joints: A
     return np.asarray(force * joints / right_of(shears))
 
 
-def section_rotation(
-    motions: Motions, factors: Array, own: Array, unknowns: Any, *, corrected: bool
-) -> Callable[[Array, int], Any]:
+def section_rotation(motions: Motions, factors: Array, fraction: Array, unknowns: Numeric, *, corrected: bool) -> Curve:
     """Section rotation psi of unknowns (n, k): (x in m, derivative) -> (k, len(x)), rad per m^derivative.
 
     A C2 spline through the links' middles and the ends. A link's rotation is the mean of psi over its length,
-    psi = theta + l^2 psi''/24 at its middle, plus the effect of wall corrections. `own` (N + 1,) is the fraction of a
+    psi = theta + l^2 psi''/24 at its middle, plus the effect of wall corrections. `fraction` (N + 1,) is the part of a
     joint's angle that is in the beam and not in a spring behind the end.
     """
     from scipy.interpolate import CubicSpline
@@ -120,9 +119,9 @@ def section_rotation(
     lengths = chain.lengths[:, None]
     jointed = [wall or elastic for wall, elastic in zip(chain.walls, chain.elastic, strict=True)]
     # rotation behind the end joint: of a body, or less the angle of the spring
-    ends = motions.end_rotations @ unknowns + ([[1.0], [-1.0]] * angles[[0, -1]]) * (1.0 - own[[0, -1], None])
+    ends = motions.end_rotations @ unknowns + ([[1.0], [-1.0]] * angles[[0, -1]]) * (1.0 - fraction[[0, -1], None])
     if corrected:
-        plain = (angles * own[:, None] / factors[:, None]) / chain.spans[:, None]
+        plain = (angles * fraction[:, None] / factors[:, None]) / chain.spans[:, None]
         off = np.cumsum((angles * (1.0 - 1.0 / factors[:, None]))[1:-1], axis=0)
         off = np.concatenate([np.zeros_like(off[:1]), off])
         links = links + off[len(off) // 2] - off + lengths / 24.0 * np.diff(plain, axis=0)
@@ -134,6 +133,6 @@ def section_rotation(
     nodes = chain.nodes
     x = np.concatenate([nodes[:1], 0.5 * (nodes[1:] + nodes[:-1]), nodes[-1:]])
     values = np.concatenate([ends[:1], links, ends[1:]]) / chain.unit
-    kinds = tuple("not-a-knot" if there else "clamped" for there in jointed)
+    kinds = tuple("not-a-knot" if joint else "clamped" for joint in jointed)
     line = CubicSpline(x, values.T, axis=1, bc_type=kinds)
     return lambda at, derivative: line(np.clip(at, nodes[0], nodes[-1]), derivative)

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from verify.arrays import Array
+from verify.arrays import Array, Numeric, Sparse
 from verify.errors import InputError
 from verify.linear.discrete import DiscreteModel
 from verify.linear.mesh import Parts, divide
 from verify.linear.system import StructuralSystem
+from verify.problem.beam import is_stepped, rigid_lines
 from verify.problem.supports import FIXED
 from verify.segments import shear
 from verify.segments.attachments import attachment_weights
@@ -59,7 +60,7 @@ class ChainStructure(DiscreteModel):
             masses=masses,
             inertias=inertias,
             elastic=self.attached.elastic,
-            flexibilities=lengths / self.links.stiffnesses if self.beam.stepped else None,
+            flexibilities=lengths / self.links.stiffnesses if is_stepped(self.beam) else None,
             reading_factors=reading_factors(self.attached.elastic, self.n_segments, self.wall)
             if any(self.attached.elastic)
             else None,
@@ -131,11 +132,11 @@ class ChainStructure(DiscreteModel):
         return count
 
     @cached_property
-    def _weights(self) -> tuple[Any, Any]:
+    def _weights(self) -> tuple[Sparse, Sparse]:
         return attachment_weights(self.chain, [body.position for body in self.attached.bodies], self.attachment)
 
     @cached_property
-    def _rotations(self) -> Any:
+    def _rotations(self) -> Sparse:
         return self.attached.rotations(self._weights[1], self.motions)
 
     # --- Stiffness and mass --------------------------------------------------------------------------------------
@@ -219,7 +220,7 @@ class ChainStructure(DiscreteModel):
         """Rigid-body modes, (n, 0 to 2)."""
         x, motions = self.chain.nodes / self.unit, self.motions
         rigid = np.zeros((motions.n, self.beam.rigid_motions))
-        for column, (start, tilt) in enumerate(self.beam.rigid_lines):
+        for column, (start, tilt) in enumerate(rigid_lines(self.beam)):
             rigid[:, column] = (start / self.unit + tilt * x) @ motions.positions + [tilt, tilt] @ motions.end_rotations
         springs = [i for i, body in enumerate(self.attached.bodies) if body.stiffness]
         if springs and rigid.size:
@@ -227,7 +228,7 @@ class ChainStructure(DiscreteModel):
             rigid[: len(motions.free)] -= (across[springs[:1]] @ rigid)[0]
         return rigid
 
-    def lossy_stiffness(self, omega: float) -> Any:
+    def lossy_stiffness(self, omega: float) -> Numeric:
         """Stiffness d with the beam's loss factor and joint dashpots; springs, foundation and tension are lossless."""
         d, dashpots = self.system.stiffness, self.joint_dashpot * omega * self.unit / self.beam.bending_stiffness
         if not (self.beam.loss_factor or dashpots):

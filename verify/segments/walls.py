@@ -3,6 +3,8 @@
 Interior joints have weight 1 of the trapezoidal rule, in link lengths. At a wall the rule needs an end correction.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from verify.arrays import Array
@@ -11,7 +13,7 @@ from verify.settings import WALLS
 
 
 def wall_factors(
-    supports: tuple[str, str], n_segments: int, wall: str, elastic: tuple[bool, bool] = (False, False)
+    supports: Sequence[str], n_segments: int, wall: str, elastic: tuple[bool, bool] = (False, False)
 ) -> Array:
     """Factors on the compliances of joints 0..N, (N + 1,); infinite at an end without a joint.
 

@@ -53,11 +53,10 @@ def _add(bands: Bands, first: int, block: Any) -> None:
 def _attach(beam: Beam, lengths: Sequence[D], k: Bands, m: Bands, per_node: int) -> tuple[Bands, Bands]:
     """Add masses and springs at the nodes, and constrain the unknowns that supports prevent."""
     nodes = np.cumsum([0.0, *map(float, lengths)])
-    attached: tuple[Any, ...] = (*beam.mass, *beam.spring)
-    for one in attached:
+    for one in beam.attached:
         row = per_node * int(np.argmin(abs(nodes - one.position)))
-        m[row, 0] += D(getattr(one, "mass", 0))
-        k[row, 0] += D(getattr(one, "stiffness", 0))
+        m[row, 0] += D(one.mass)
+        k[row, 0] += D(one.stiffness)
     for first, support in zip((0, per_node * len(lengths)), beam.supports, strict=True):
         k[first : first + {"free": 0, "pinned": 1, "clamped": per_node}[support], 0] = BLOCKED
     return k, m

@@ -44,7 +44,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         for device in self.devices:
-            device.check_on(self.beam)
+            device.check_on("device", self.beam.length, self.beam.supports)
             if device.amplitude and self.kind != "force":
                 raise InputError(f"drive.kind = {self.kind!r}: a device then has no force, leave its amplitude out")
         if self.shunts and self.kind == "displacement":

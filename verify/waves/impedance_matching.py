@@ -23,7 +23,7 @@ from verify.arrays import ComplexArray
 from verify.errors import InputError
 from verify.exact.layout import HELD
 from verify.linear.field import wavenumber
-from verify.problem.beam import Beam, check_frequency
+from verify.problem.beam import Beam, check_features, check_frequency
 from verify.problem.device import Device, of_impedance
 from verify.validation import check_number, check_type
 
@@ -54,8 +54,7 @@ def ending(
     Raises InputError at a support without motion (message with the `name` of the position) and for a non-uniform beam.
     """
     check_number("position", distance, "metres from the end", at_least=0)
-    if not beam.uniform:
-        raise InputError(f"beam.{beam.features[0]}: a half-infinite beam is uniform, leave it out")
+    check_features(beam, "the half-infinite beam")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
     unit = 4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3 / omega
 

@@ -17,7 +17,7 @@ from verify.analytic_modes import ExactModel
 from verify.arrays import Array
 from verify.errors import InputError
 from verify.linear.positions import Numbers, vector_on
-from verify.problem.beam import Beam
+from verify.problem.beam import Beam, check_features
 from verify.waves.two_waves import reflections, standing_wave_ratios
 
 
@@ -26,8 +26,7 @@ def lumped_swr(beam: Beam, x: Numbers, modes: tuple[int, int] = (21, 22)) -> Arr
 
     Infinite for a standing wave. Raises InputError off the beam, for equal modes and for a non-uniform beam.
     """
-    if not beam.uniform:
-        raise InputError(f"beam.{beam.features[0]}: the two-mode model takes a uniform beam, leave it out")
+    check_features(beam, "the two-mode model")
     if modes[0] == modes[1]:
         raise InputError(f"modes = {list(modes)}: give two different modes")
     at, model = vector_on("x", x, beam.length), ExactModel(beam)
