@@ -2,7 +2,7 @@
 
 import os
 import sys
-from errno import EIO, ENOSPC
+from errno import EDQUOT, EFBIG, EIO, ENOSPC
 from importlib import import_module
 from io import StringIO, TextIOWrapper
 from typing import Any, NoReturn
@@ -93,7 +93,7 @@ def status_of(argv: list[str] | None = None) -> int:
     except (BrokenPipe, BrokenPipeError):
         status, sentences = BROKEN_PIPE, []
     except OSError as error:
-        if error.errno not in (ENOSPC, EIO) or error.filename is not None:
+        if error.errno not in (ENOSPC, EIO, EFBIG, EDQUOT) or error.filename is not None:
             raise
         status = BAD_INPUT
         sentences = [f"standard output = {error.strerror}: free disk space, or write elsewhere"]
@@ -115,6 +115,7 @@ def main() -> NoReturn:
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     os.environ.setdefault("VERIFY_JOBS", str(os.cpu_count() or 1))
+    os.environ["MPLBACKEND"] = "agg"  # charts go to files, whatever shows those of other programs
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by the caller, as for jobs without a terminal
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # until the process ends

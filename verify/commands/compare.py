@@ -1,5 +1,6 @@
 """`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
+from os.path import exists
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +80,7 @@ def compare(
     loaded = load_beam(scene, overrides)
     options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory or THEORIES[0])
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
-    typed_list = None if Path(words[0] if words else "").exists() else read_words(words, unit)
+    typed_list = None if exists(words[0] if words else "") else read_words(words, unit)  # of any length: no error
     if model is not None:
         frequencies = solve_model(model, loaded.beam, count, mode)
     elif typed_list is not None:

@@ -14,6 +14,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
+from verify.files import readable
 
 SLIDE = "is a slide or a free base"
 ROUND = (3, 5)
@@ -71,6 +72,7 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
     Gravity of SDF and URDF is that of an empty world.
     """
     earth = np.array([0.0, 0.0, -9.81])
+    readable(path, "file")
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":

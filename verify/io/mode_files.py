@@ -9,6 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, one_line
+from verify.files import MESH, readable
 
 UNIVERSAL = (".uff", ".unv")
 """Suffixes of universal files."""
@@ -23,9 +24,8 @@ def is_mesh(suffix: str) -> bool:
 
 def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
     """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
-    if path.suffix.lower() in UNIVERSAL:
-        return _universal(path, source)
-    return _mesh(path, source)
+    readable(path, "file", MESH)
+    return _universal(path, source) if path.suffix.lower() in UNIVERSAL else _mesh(path, source)
 
 
 def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
