@@ -16,7 +16,7 @@ TEXT, MESH = 50_000_000, 2_000_000_000
 
 
 def exists(path: Path, field: str) -> bool:
-    """Whether a file or folder exists. Raises InputError where no such name can be, or its folder may not be entered."""
+    """Whether a file or folder exists. Raises InputError for an impossible name, or in a folder closed to the user."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError):
