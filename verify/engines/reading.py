@@ -13,7 +13,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.description import AXES, Axis
-from verify.errors import InputError, one_line, shown
+from verify.errors import InputError, shown
 from verify.files import readable
 
 SLIDE = "is a slide or a free base"
@@ -85,7 +85,9 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
     except InputError:
         raise
     except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
-        raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
+        unnamed = f"{error} is named and is not there" if isinstance(error, LookupError) else "it has no <model>"
+        why = unnamed if isinstance(error, LookupError | StopIteration) else " ".join(str(error).split())
+        raise InputError(f"{path.name} cannot be read ({why}): correct it there, or write it anew") from None
     raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
 
 

@@ -98,7 +98,8 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
         with redirect_stdout(output), redirect_stderr(output):
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # readers of many formats raise many types
-        why = one_line(str(error) or output.getvalue())[:200]
-        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
+        printed = output.getvalue() if isinstance(error, SystemExit) else str(error)
+        why = one_line(" ".join(printed.split()) or "it is cut or damaged")[:200]
+        raise InputError(f"{source} is no mesh that meshio reads ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}

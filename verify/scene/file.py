@@ -1,7 +1,6 @@
 """Scene files as plain tables: TOML read once, values set by `--set`, copies under another name; and the beam alone."""
 
 import re
-import tomllib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,7 +8,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from verify.convert import convert, entry_of, structs_of, typed
+from verify.convert import RULE, convert, entry_of, structs_of, toml, typed
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists, read_text
 from verify.problem.beam import Beam
@@ -23,10 +22,13 @@ SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --json > verify.schema.json` writes the file."""
 
 
+_NAME = {RULE: "at most 120 letters, digits, dots, _ and -, with a letter or digit first"}
+
+
 class NamedBeam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The keys of a scene that a command on the beam alone reads."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120, extra=_NAME)]
     """Name of the scene and of its reports."""
     title: str = ""
     """Heading of its report."""
@@ -79,7 +81,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file. Raises InputError where it is none."""
     text = read_text(path, "scene", LARGEST)
     try:
-        return tomllib.loads(text)
+        return toml(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"scene = {shown(str(path))} is not TOML: {error}") from None
 
