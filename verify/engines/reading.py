@@ -78,16 +78,16 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
         if root.tag == "mujoco":
             return root.tag, *_mjcf(path)
         if root.tag == "sdf":
-            return root.tag, _xml(next(root.iter("model")), path.name, None), earth
+            return root.tag, _finite(_xml(next(root.iter("model")), path.name, None)), earth
         if root.tag == "robot":
             springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
-            return root.tag, _xml(root, path.name, springs), earth
+            return root.tag, _finite(_xml(root, path.name, springs)), earth
     except InputError:
         raise
     except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
         unnamed = f"{error} is named and is not there" if isinstance(error, LookupError) else "it has no <model>"
         why = unnamed if isinstance(error, LookupError | StopIteration) else " ".join(str(error).split())
-        raise InputError(f"{path.name} cannot be read ({why}): correct it there, or write it anew") from None
+        raise InputError(f"{path.name}: not readable ({why}): correct it there, or write it anew") from None
     raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
 
 
@@ -123,14 +123,24 @@ def _mjcf(path: Path) -> tuple[list[Solid], Array]:
     solids = []
     for b in range(1, model.nbody):
         own = data.ximat[b].reshape(3, 3)
-        inertia = (own * model.body_inertia[b]) @ own.T
+        with np.errstate(invalid="ignore"):  # refused by `_finite`
+            inertia = (own * model.body_inertia[b]) @ own.T
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
         drawn = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
         radii = [float(model.geom_size[i, 0]) for i in drawn if model.geom_type[i] in ROUND]
         own_moves, radius, centre = tuple(moves(b)), max(radii, default=0.0), data.xipos[b].copy()
         solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius))
-    return solids, np.array(model.opt.gravity)
+    return _finite(solids), np.array(model.opt.gravity)
+
+
+def _finite(solids: list[Solid]) -> list[Solid]:
+    """The bodies. Raises ValueError where masses or places are no finite numbers."""
+    for one in solids:
+        springs = [move.stiffness for move in one.moves]
+        if not all(np.isfinite(part).all() for part in (one.mass, one.centre, one.origin, one.inertia, springs)):
+            raise ValueError(f"{shown(one.name)} has a number that is not finite")
+    return solids
 
 
 def _value(one: ElementTree.Element | None, path: str) -> str:
