@@ -5,6 +5,7 @@ import sys
 from errno import EDQUOT, EFBIG, EIO, ENOSPC
 from importlib import import_module
 from io import StringIO, TextIOWrapper
+from signal import SIG_IGN, SIGINT, signal
 from typing import Any, NoReturn
 
 import click
@@ -122,4 +123,9 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(status_of())
+    try:
+        status = status_of()
+        signal(SIGINT, SIG_IGN)  # an interrupt of the interpreter's end would be printed as an ignored exception
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    sys.exit(status)

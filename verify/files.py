@@ -1,11 +1,13 @@
 """Inputs that are read only where they are ordinary files; files and folders that are written whole or not at all."""
 
+import atexit
 import os
 import shutil
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from io import FileIO
 from pathlib import Path
 
@@ -118,8 +120,12 @@ def write_folder(folder: Path, texts: Mapping[str, str], field: str = "folder") 
 @contextmanager
 def _scratch(path: Path) -> Iterator[Path]:
     """A hidden temporary folder beside `path`."""
-    folder = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name[:80]}.", suffix=".part"))
+    folder = path.parent / f".{path.name[:40]}.{os.urandom(4).hex()}.part"
+    remove = partial(shutil.rmtree, folder, ignore_errors=True)
+    atexit.register(remove)  # before the folder is there: an interrupt may come at any later place, this one's end too
     try:
+        folder.mkdir(mode=0o700)
         yield folder
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove()
+        atexit.unregister(remove)

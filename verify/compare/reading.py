@@ -309,4 +309,4 @@ def _last_digit(cell: str, value: float, most: int) -> float:
     digits = len(mantissa.partition(".")[2])
     if "." not in mantissa:
         digits = -min(len(mantissa) - len(mantissa.rstrip("0")), max(len(mantissa) - most, 0))
-    return max(10.0 ** (int(exponent or 0) - digits) / abs(value), 1e-16) if value else 0.0
+    return max(float(f"1e{int(exponent or 0) - digits}") / abs(value), 1e-16) if value else 0.0

@@ -105,7 +105,7 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
     """
     if not exists(path, field):
         raise InputError(f"{field} = {str(path)!r} does not exist: give a {DATA}, or a folder of saved runs")
-    if path.is_file():
+    if not path.is_dir():
         files = [path]
     elif exists(path / DATA, field):
         files = [path / DATA]
