@@ -25,7 +25,14 @@ def is_mesh(suffix: str) -> bool:
 def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
     """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
     readable(path, "file", MESH)
-    return _universal(path, source) if path.suffix.lower() in UNIVERSAL else _mesh(path, source)
+    if path.suffix.lower() not in UNIVERSAL:
+        return _mesh(path, source)
+    try:
+        return _universal(path, source)
+    except InputError:
+        raise
+    except (ValueError, LookupError, TypeError):  # columns of unequal length, sets without their fields
+        raise InputError(f"{source} has a set that is cut or damaged: write sets 15 and 55, or 15 and 58") from None
 
 
 def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -84,9 +91,8 @@ def _sets(path: Path, source: str) -> list[dict[str, Any]]:
     try:
         return [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
     except Exception as error:  # its reader raises plain ones
-        raise InputError(
-            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
-        ) from None
+        why = one_line(str(error))[:200]
+        raise InputError(f"{source} is cut or no universal file (pyuff: {why}): write sets 15 and 55") from None
 
 
 def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
