@@ -157,8 +157,8 @@ class DiscreteModel(BeamModel):
         try:
             values, vectors = self.stable_system.modes(n_modes)
         except np.linalg.LinAlgError:
-            text = f"beam: modes of {self.count} {self.parts} are within rounding"
-            raise InputError(f"{text}: give sections and masses that differ less, or a lower count") from None
+            text = f"{self.count} {self.parts} are within rounding: give sections that differ less, or a lower count"
+            raise InputError(f"beam: modes of {text}") from None
         vectors = self._normalised(vectors)
         return Modes(
             model=self.name,

@@ -33,29 +33,16 @@ KEEP = 5
 """Saved runs of one name."""
 DEEPEST = 50
 """Levels of inputs that are compared one by one, five times those of a scene."""
+_GATE = msgspec.defstruct(
+    "Gate", [("id", str), ("passed", bool | None), ("value", float | str | dict | None), ("expected", str | None)]
+)
+_VERDICT = msgspec.defstruct("Verdict", [("level", str), ("headline", str)])
+_RUN = msgspec.defstruct(
+    "Run",
+    [("report", str), ("verdict", _VERDICT), ("gates", list[_GATE]), ("inputs", dict), ("environment", dict)],  # type: ignore[valid-type]
+)
+"""What is compared; other keys may be beside them."""
 _TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
-
-
-class _Gate(msgspec.Struct):
-    """What is compared of a gate; other keys may be beside them, here and below."""
-
-    id: str
-    passed: bool | None
-    value: float | str | dict[str, Any] | None
-    expected: str | None
-
-
-class _Verdict(msgspec.Struct):
-    level: str
-    headline: str
-
-
-class _Run(msgspec.Struct):
-    report: str
-    verdict: _Verdict
-    gates: list[_Gate]
-    inputs: dict[str, Any]
-    environment: dict[str, Any]
 
 
 class Saved(NamedTuple):
@@ -125,7 +112,7 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
 def _read(path: Path, field: str) -> dict[str, Any]:
     try:
         run = json.loads(read_text(path, field))
-        msgspec.convert(run, _Run)
+        msgspec.convert(run, _RUN)
     except (json.JSONDecodeError, msgspec.ValidationError, RecursionError):
         raise InputError(f"{field} = {str(path)!r} is no saved run: give the {DATA} that `verify run` writes") from None
     return dict(run)
