@@ -2,9 +2,10 @@
 
 import os
 import sys
-from errno import EIO, ENOSPC
+from errno import EDQUOT, EFBIG, EIO, ENOSPC
 from importlib import import_module
 from io import StringIO, TextIOWrapper
+from signal import SIG_IGN, SIGINT, signal
 from typing import Any, NoReturn
 
 import click
@@ -93,7 +94,7 @@ def status_of(argv: list[str] | None = None) -> int:
     except (BrokenPipe, BrokenPipeError):
         status, sentences = BROKEN_PIPE, []
     except OSError as error:
-        if error.errno not in (ENOSPC, EIO) or error.filename is not None:
+        if error.errno not in (ENOSPC, EIO, EFBIG, EDQUOT) or error.filename is not None:
             raise
         status = BAD_INPUT
         sentences = [f"standard output = {error.strerror}: free disk space, or write elsewhere"]
@@ -115,10 +116,16 @@ def main() -> NoReturn:
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     os.environ.setdefault("VERIFY_JOBS", str(os.cpu_count() or 1))
+    os.environ["MPLBACKEND"] = "agg"  # charts go to files, whatever shows those of other programs
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by the caller, as for jobs without a terminal
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  # until the process ends
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(status_of())
+    try:
+        status = status_of()
+        signal(SIGINT, SIG_IGN)  # an interrupt of the interpreter's end would be printed as an ignored exception
+    except KeyboardInterrupt:
+        status = INTERRUPTED
+    sys.exit(status)

@@ -8,11 +8,12 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
-from verify.errors import InputError, near_name, raise_all, shown
+from verify.errors import InputError, near_name, printable, raise_all, shown
 
 T = TypeVar("T")
 
 RELATIVE = "relative"  # key in `extra` of a dimensionless number, which a command line accepts in per cent as well
+RULE = "rule"  # key in `extra` of a text with a pattern: what the pattern allows, in words
 LONGEST_RANGE = 10_000
 _WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
 _PLAIN = {"int": "a whole number", "float": "a number", "str": "a word", "bool": "true or false"}
@@ -115,9 +116,13 @@ def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
     table = table_of(kind)
     if table is not None and not isinstance(value, dict):
         return f"{subject}: give a table, a {table.__name__} in Python"
-    text = error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
+    rule, text = (
+        extra_of(kind, RULE),
+        error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", ""),
+    )
     text = re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
-    return f"{subject}: {text}"
+    text = text.replace("length <=", "length at most").replace("length >=", "length at least")
+    return f"{subject}: {f'give {rule}' if rule else text}"
 
 
 def arms_of(kind: Any) -> tuple[Any, ...]:
@@ -175,15 +180,29 @@ def type_name(kind: Any) -> str:
     return _PLAIN.get(name, name).removeprefix("a ")
 
 
-def literal(text: str, field: str) -> Any:
-    """A TOML literal; a bare word is a string, values with commas between them are a list. Raises InputError."""
+def toml(text: str) -> dict[str, Any]:
+    """The tables of a TOML text, dates as text, control characters escaped. Raises ValueError, RecursionError."""
     import tomllib
 
+    def plain(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {printable(key): plain(one) for key, one in value.items()}
+        if isinstance(value, list):
+            return [plain(one) for one in value]
+        text = value.isoformat() if hasattr(value, "isoformat") else value
+        return printable(text, "\n\t") if isinstance(text, str) else text
+
+    tables: dict[str, Any] = plain(tomllib.loads(text))
+    return tables
+
+
+def literal(text: str, field: str) -> Any:
+    """A TOML literal; a bare word is a string, values with commas between them are a list. Raises InputError."""
     if any("\ud800" <= character <= "\udfff" for character in text):
         raise InputError(f"{field} = {shown(text)} is not text in UTF-8: type it again")
     number = re.fullmatch(r"[+-]?(\d+\.|\.\d+)([eE][+-]?\d+)?", text)  # no TOML, but often typed
     try:
-        value = float(text) if number else tomllib.loads(f"value = {text}")["value"]
+        value = float(text) if number else toml(f"value = {text}")["value"]
     except (ValueError, KeyError, RecursionError):
         lists = "," in text and not text.lstrip().startswith(("[", "{", '"', "'"))
         return [literal(part.strip(), field) for part in text.split(",") if part.strip()] if lists else text

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from reprlib import Repr
+from unicodedata import category
 
 SENTENCE, VALUE = 1600, 120  # largest length of a message, and of a value in a message, characters
 NAMES = 12  # largest number of known names in a message
@@ -53,6 +54,8 @@ def raise_all(sentences: Sequence[str], most: int = 1_000_000) -> None:
 
 def near_name(word: str, names: Sequence[str]) -> str:
     """The remedy for an unknown name: the nearest known name, else the first `NAMES` known names."""
+    if not names:
+        return "there is none here, leave it out"
     from difflib import get_close_matches
 
     plain = {name.casefold(): name for name in names}
@@ -67,9 +70,11 @@ def one_line(text: str) -> str:
     return shortened(printable(shortened(text, SENTENCE)), SENTENCE)
 
 
-def printable(text: str) -> str:
-    """A text with control characters and reversed writing direction escaped."""
-    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+def printable(text: str, keep: str = "") -> str:
+    """A text with control characters, but for those in `keep`, and reversed writing direction escaped."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in keep or category(c) == "Zs" else repr(c)[1:-1] for c in text)
 
 
 class _Short(Repr):

@@ -147,7 +147,7 @@ class TestMesh:
 
     def test_bad_meshes_are_one_sentence(self, tmp_path):
         (tmp_path / "text.vtu").write_text("no mesh")
-        wrong = {tmp_path / "text.vtu": "cannot be read by meshio", tmp_path / "absent.vtu": "does not exist"}
+        wrong = {tmp_path / "text.vtu": "is no mesh", tmp_path / "absent.vtu": "does not exist"}
         wrong[solid(tmp_path / "long.vtu", scale=1.7)] = "set beam.length"
         for path, message in wrong.items():
             with pytest.raises(InputError, match=message):

@@ -116,7 +116,7 @@ def test_a_kind_that_is_no_word_is_not_known(tmp_path):
 
 def test_unreadable_files_are_refused(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, tmp_path / "no" / "folder.toml"):
-        with pytest.raises(InputError, match="cannot be read"):
+        with pytest.raises(InputError, match=r"does not exist|folder"):
             load_scene(path)
     (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00name")
     with pytest.raises(InputError, match="UTF-8"):

@@ -8,7 +8,7 @@ import click
 
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
 from verify.errors import InputError, printable
-from verify.files import exists, write_whole
+from verify.files import exists, read_text, write_whole
 from verify.problem.phrase import PREFIX
 from verify.report.result import Column, Result, Table
 from verify.scene import file as files
@@ -38,7 +38,7 @@ def show_scene(scene: str, overrides: tuple[str, ...]) -> None:
 
     tables = tables_of(scene, overrides)
     scene_from(tables)
-    text = files.toml_text(tables) if overrides else files.read_text(files.scene_path(scene))
+    text = files.toml_text(tables) if overrides else read_text(files.scene_path(scene), "scene")
     click.echo(text, nl=not text.endswith("\n"))
 
 
@@ -51,12 +51,12 @@ def init(path: str, scene: str | None, force: bool) -> None:
 
     Example: `verify scenes init mine.toml --from steel-cantilever`
     """
-    text = files.read_text(files.STARTER)
+    text = read_text(files.STARTER, "scene")
     if scene is not None:
         if scene.startswith(PREFIX):
             text = files.starter_with(files.read_tables(scene))
         else:
-            text = files.read_text(files.scene_path(scene))
+            text = read_text(files.scene_path(scene), "scene")
         text = files.copy_with_name(text, files.name_of(Path(path)))
     if exists(Path(path), "path") and not force:
         raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.errors import InputError
+from verify.errors import InputError, printable
 from verify.files import whole, writable_folder, write_whole
 from verify.parallel import cluster
 from verify.problem.materials import MATERIALS
@@ -20,6 +20,7 @@ from verify.report.result import Result, to_json
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.segment import Segment
 
 CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
 """Suffixes of chains of rigid bodies."""
@@ -103,7 +104,8 @@ def show(
         if not result.tables:
             option = "--csv" if as_csv else "--markdown"
             raise InputError(f"{option}: this result has no table, leave it out or use --json")
-        click.echo(result.tables[0].csv() if as_csv else result.tables[0].markdown(), nl=False)
+        text = result.tables[0].csv() if as_csv else result.tables[0].markdown()
+        click.echo(printable(text, "\n\t"), nl=False)
     else:
         result.print(console())
     if charts is not None:
@@ -132,6 +134,11 @@ def console() -> "Console":
         def on_broken_pipe(self) -> None:
             """Leave a closed pipe to `cli`: rich would exit with the status of a failed gate."""
             raise BrokenPipeError
+
+        def render(self, *args: Any, **options: Any) -> Iterator["Segment"]:
+            """Escape what names and titles from files would have a terminal do."""
+            for part in super().render(*args, **options):
+                yield part if part.control else part._replace(text=printable(part.text, "\n"))
 
     width = None if sys.stdout.isatty() else 100
     return Output(file=sys.stdout, markup=False, highlight=False, emoji=False, width=width)

@@ -15,7 +15,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError, shown
-from verify.files import exists
+from verify.files import read_text
 from verify.io.mode_files import UNIVERSAL, read_response
 from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
@@ -135,7 +135,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     spaces separate; decimal commas in files without points.
     """
     source = f"frequencies file {str(path)!r}"
-    text = _text(path, source)
+    text = read_text(path, "file")
     if cells := _solver_cells(text):
         return listed(source, _numbers(cells, source), cells, declared=True)
     lines = [line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#%!"]
@@ -223,7 +223,7 @@ def read_series(path: Path) -> tuple[Array, Array, Array | None]:
 
 def _table(path: Path, source: str) -> tuple[list[str], Array]:
     """(header or empty, numbers (n, k)) of a text file. Raises InputError."""
-    head, rows = _rows(_text(path, source), source)
+    head, rows = _rows(read_text(path, "file"), source)
     return head, np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
 
 
@@ -262,16 +262,6 @@ def solve_model(name: str, beam: Beam, count: int | None, n_modes: int | None) -
     finally:
         sys.path.remove(str(Path.cwd()))
     return listed(f"model {name}", values.ravel().tolist())
-
-
-def _text(path: Path, source: str) -> str:
-    """Text of a file or of standard input. Raises InputError."""
-    try:
-        if str(path) != "-" and not exists(path, "file"):
-            raise InputError(f"{source} does not exist: give a text file")
-        return (sys.stdin.buffer.read() if str(path) == "-" else path.read_bytes()).decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{source} cannot be read ({error}): give a text file in UTF-8") from None
 
 
 def _rows(text: str, source: str) -> tuple[list[str], list[list[str]]]:
@@ -319,4 +309,4 @@ def _last_digit(cell: str, value: float, most: int) -> float:
     digits = len(mantissa.partition(".")[2])
     if "." not in mantissa:
         digits = -min(len(mantissa) - len(mantissa.rstrip("0")), max(len(mantissa) - most, 0))
-    return max(10.0 ** (int(exponent or 0) - digits) / abs(value), 1e-16) if value else 0.0
+    return max(float(f"1e{int(exponent or 0) - digits}") / abs(value), 1e-16) if value else 0.0

@@ -18,8 +18,7 @@ from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS
 from verify.compare.compare import Options, compare, exact_shapes, pair_shapes
 from verify.compare.reading import FrequencyList, ModeShapes, checked_shapes, listed
-from verify.errors import InputError
-from verify.files import exists
+from verify.errors import InputError, shown
 from verify.io.mode_files import UNIVERSAL, read_points
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
@@ -52,9 +51,7 @@ def read_mesh(path: Path, length: float) -> MeshShapes:
     The axis is the longest direction, the thickness the shortest. Field data named after Hz or rad/s, and the times of
     an xdmf series, are frequencies. Raises InputError.
     """
-    source = f"file = {str(path)!r}"
-    if not exists(path, "file"):
-        raise InputError(f"{source} does not exist: give a mesh, for instance a .vtu")
+    source = f"file = {shown(str(path))}"
     points, arrays, field = read_points(path, source)
     if len(points) < 3 or not np.isfinite(points).all():
         raise InputError(f"{source} has {len(points)} points, or infinite ones: give three or more finite points")

@@ -22,6 +22,7 @@ import msgspec
 import numpy as np
 
 from verify.arrays import Array
+from verify.errors import InputError
 from verify.exact.torsion import shafts, torsion_hz
 from verify.formatting import one_line
 from verify.problem.beam import Beam, check_features, in_plane, with_attachments
@@ -213,15 +214,21 @@ def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: in
     """Elastic natural frequencies, ascending, Hz, of matrices (n, n) whose unknowns `constraints` (m, n) make zero.
 
     The largest eigenvalues of the inverse problem are the lowest modes without loss of digits; a shift makes the
-    stiffness of a system with `loose` rigid-body motions positive definite.
+    stiffness of a system with `loose` rigid-body motions positive definite. Raises InputError within rounding.
     """
-    from scipy.linalg import eigh, null_space
+    from scipy.linalg import LinAlgError, eigh, null_space
 
     if len(constraints):
         basis = null_space(constraints)
         mass, stiffness = basis.T @ mass @ basis, basis.T @ stiffness @ basis
-    shift = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[loose, loose])[0] if loose else 0.0
-    values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][loose:]
+    try:
+        shift = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[loose, loose])[0] if loose else 0.0
+        values = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1][loose:]
+        if (values <= 0.0).any() or (values * shift > 1.0).any():
+            raise LinAlgError
+    except LinAlgError:
+        text = "beam: frequencies of its chain are within rounding: give sections that differ less"
+        raise InputError(text) from None
     return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))
 
 

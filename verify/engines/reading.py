@@ -13,6 +13,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.errors import InputError, one_line, shown
+from verify.files import readable
 
 SLIDE = "is a slide or a free base"
 ROUND, BOX = (3, 5), 6
@@ -59,6 +60,7 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
     Gravity of SDF and URDF is that of an empty world.
     """
     gravity = np.array([0.0, 0.0, -9.81])
+    readable(path, "file")
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
@@ -73,7 +75,8 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from None
     except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError) as error:
-        raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
+        why = f"{error} is named and is not there" if isinstance(error, LookupError) else one_line(str(error))
+        raise InputError(f"{path.name}: not readable ({why}): correct it there, or write it anew") from None
     return root.tag, solids, gravity
 
 
@@ -145,7 +148,8 @@ def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array]:
     solids = []
     for b in range(1, model.nbody):
         own = data.ximat[b].reshape(3, 3)
-        inertia = (own * model.body_inertia[b]) @ own.T
+        with np.errstate(invalid="ignore"):  # refused by `_check`
+            inertia = (own * model.body_inertia[b]) @ own.T
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
         radius, shape = 0.0, np.zeros((3, 3))

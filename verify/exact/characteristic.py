@@ -276,7 +276,10 @@ def wavenumber_length(layout: BeamLayout, number: int) -> float:
         deflections, rotations = (sum(s in (held, "clamped") for s in layout.supports) for held in ("pinned", "guided"))
         rigid = max(2 - deflections - min(rotations, 1), 0)
         return closed_forms.wavenumber_length(layout.supports, number - rigid) if number > rigid else 0.0
-    return nth_root(lambda beta: count_at(layout, beta**4), number)
+    try:
+        return nth_root(lambda beta: count_at(layout, beta**4), number)
+    except OverflowError:
+        raise InputError(f"beam: mode {number} is beyond floating point: lower its tension or foundation") from None
 
 
 def nth_root(count: Callable[[float], Count], number: int) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, one_line
+from verify.files import MESH, readable
 
 UNIVERSAL = (".uff", ".unv")
 """Suffixes of universal files."""
@@ -23,9 +24,15 @@ def is_mesh(suffix: str) -> bool:
 
 def read_points(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Any]]:
     """(points (n, 3), arrays at them, field data with frequencies). Raises InputError."""
-    if path.suffix.lower() in UNIVERSAL:
+    readable(path, "file", MESH)
+    if path.suffix.lower() not in UNIVERSAL:
+        return _mesh(path, source)
+    try:
         return _universal(path, source)
-    return _mesh(path, source)
+    except InputError:
+        raise
+    except (ValueError, LookupError, TypeError):  # columns of unequal length, sets without their fields
+        raise InputError(f"{source} has a set that is cut or damaged: write sets 15 and 55, or 15 and 58") from None
 
 
 def _universal(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -84,9 +91,8 @@ def _sets(path: Path, source: str) -> list[dict[str, Any]]:
     try:
         return [pyuff.UFF(str(path)).read_sets(i) for i in range(pyuff.UFF(str(path)).get_n_sets())]
     except Exception as error:  # its reader raises plain ones
-        raise InputError(
-            f"{source} cannot be read by pyuff ({one_line(str(error))[:200]}): write sets 15, 55"
-        ) from None
+        why = one_line(str(error))[:200]
+        raise InputError(f"{source} is cut or no universal file (pyuff: {why}): write sets 15 and 55") from None
 
 
 def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, Array]]:
@@ -98,7 +104,8 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
         with redirect_stdout(output), redirect_stderr(output):
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # readers of many formats raise many types
-        why = one_line(str(error) or output.getvalue())[:200]
-        raise InputError(f"{source} cannot be read by meshio ({why}): save the mesh as .vtu") from None
+        printed = output.getvalue() if isinstance(error, SystemExit) else str(error)
+        why = one_line(" ".join(printed.split()) or "it is cut or damaged")[:200]
+        raise InputError(f"{source} is no mesh that meshio reads ({why}): save the mesh as .vtu") from None
     arrays = {str(name): np.asarray(values) for name, values in mesh.point_data.items()}
     return np.asarray(mesh.points, dtype=float), arrays, {str(k): np.asarray(v) for k, v in mesh.field_data.items()}

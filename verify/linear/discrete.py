@@ -151,10 +151,14 @@ class DiscreteModel(BeamModel):
     # --- Modes, buckling, motion in time -------------------------------------------------------------------------
 
     def modes(self, n_modes: int) -> Modes:
-        """The first elastic modes. Raises InputError for too many modes, and for compression beyond buckling."""
+        """The first elastic modes. Raises InputError for too many, within rounding, and for compression to buckling."""
         self.check_n_modes(n_modes)
         self.check_memory(n_modes)
-        values, vectors = self.stable_system.modes(n_modes)
+        try:
+            values, vectors = self.stable_system.modes(n_modes)
+        except np.linalg.LinAlgError:
+            text = f"{self.count} {self.parts} are within rounding: give sections that differ less, or a lower count"
+            raise InputError(f"beam: modes of {text}") from None
         vectors = self._normalised(vectors)
         return Modes(
             model=self.name,

@@ -129,7 +129,7 @@ class StructuralSystem(FactoredSystem):
         Rounding of a vector is 1e-4 of its strain at 1e6 parts: strains are those of a refined solution.
         """
         from scipy.linalg import eigh
-        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+        from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
         # a stiff foundation clusters the eigenvalues; on soft supports bending is lost without a shift
         bending = (3.0 / self.n) ** 4
@@ -143,9 +143,9 @@ class StructuralSystem(FactoredSystem):
         sides = [(below, "SA"), (k - below, "LA")] if below else [(k, "LM")]
         try:
             vectors = np.hstack([eigsh(inverse, number, which=end, **sought)[1] for number, end in sides if number > 0])
-        except ArpackNoConvergence:
+        except ArpackError:  # not converged, or within rounding
             raise InputError(
-                f"the lowest {k} of {self.n} modes do not converge: support the beam or lower count"
+                f"the lowest {k} of {self.n} modes do not converge: support the beam, lower its masses or count"
             ) from None
         strains, vectors = solve(self.mass @ vectors, refined=True)
         energies, masses = strains.T @ (self.stiffness[:, None] * strains), vectors.T @ (self.mass @ vectors)
@@ -399,7 +399,7 @@ class StructuralSystem(FactoredSystem):
         loads are too close together.
         """
         from scipy.sparse import diags_array
-        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+        from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
         soft = self.stiffness < 0.0
         if not soft.any():
@@ -418,7 +418,7 @@ class StructuralSystem(FactoredSystem):
         start = np.random.default_rng(0).standard_normal(size)
         try:
             return float(1.0 / eigsh(operator, 1, which="LA", v0=start, ncv=60, return_eigenvectors=False)[0])
-        except ArpackNoConvergence:
+        except ArpackError:  # not converged, or within rounding
             raise InputError(
                 "count: the lowest buckling loads are too close together with so many parts, lower it"
             ) from None

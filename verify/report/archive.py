@@ -6,6 +6,7 @@ reports/paper/2026-03-01_14-05-09-271828/run.json    its data (`report.summary.r
 """
 
 import json
+import os
 import re
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,8 +14,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from verify.errors import InputError
-from verify.files import exists, write_folder, write_whole
+import msgspec
+
+from verify.errors import InputError, shown
+from verify.files import exists, read_text, write_folder, write_whole
 from verify.report.page import run_page
 from verify.report.result import Column, Result, Table, to_json
 from verify.report.summary import VERDICTS, run_data
@@ -28,6 +31,17 @@ Run = Mapping[str, Any]
 """Data of a run (`report.summary.run_data`)."""
 KEEP = 5
 """Saved runs of one name."""
+DEEPEST = 50
+"""Levels of inputs that are compared one by one, five times those of a scene."""
+_GATE = msgspec.defstruct(
+    "Gate", [("id", str), ("passed", bool | None), ("value", float | str | dict | None), ("expected", str | None)]
+)
+_VERDICT = msgspec.defstruct("Verdict", [("level", str), ("headline", str)])
+_RUN = msgspec.defstruct(
+    "Run",
+    [("report", str), ("verdict", _VERDICT), ("gates", list[_GATE]), ("inputs", dict), ("environment", dict)],  # type: ignore[valid-type]
+)
+"""What is compared; other keys may be beside them."""
 _TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
 
 
@@ -78,10 +92,14 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
     """
     if not exists(path, field):
         raise InputError(f"{field} = {str(path)!r} does not exist: give a {DATA}, or a folder of saved runs")
-    if path.is_file():
+    if not path.is_dir():
         files = [path]
-    elif (path / DATA).is_file():
+    elif exists(path / DATA, field):
         files = [path / DATA]
+    elif not os.access(path, os.R_OK):
+        raise InputError(
+            f"{field} = {shown(str(path))} may not be read: change its permissions, or give a {DATA} in it"
+        )
     else:
         homes = [path] if saved_in(path) else sorted(home for home in path.iterdir() if home.is_dir())
         files = [saved_in(home)[-1] / DATA for home in homes if saved_in(home)]
@@ -93,9 +111,9 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
 
 def _read(path: Path, field: str) -> dict[str, Any]:
     try:
-        run = json.loads(path.read_text("utf-8"))
-        run["report"], run["verdict"]["level"], run["gates"], run["inputs"], run["environment"]
-    except (OSError, ValueError, TypeError, KeyError):
+        run = json.loads(read_text(path, field))
+        msgspec.convert(run, _RUN)
+    except (json.JSONDecodeError, msgspec.ValidationError, RecursionError):
         raise InputError(f"{field} = {str(path)!r} is no saved run: give the {DATA} that `verify run` writes") from None
     return dict(run)
 
@@ -158,7 +176,7 @@ def _turn(before: str, after: str) -> str:
 
 
 def _text(value: Any) -> Any:
-    return value if value is None or isinstance(value, float | int) else ", ".join(f"{k} {v}" for k, v in value.items())
+    return ", ".join(f"{k} {v}" for k, v in value.items()) if isinstance(value, dict) else value
 
 
 def _versions(run: Run) -> dict[str, Any]:
@@ -171,7 +189,7 @@ def _changed(before: Any, after: Any, path: str = "") -> Iterator[tuple[str, str
         return
     if isinstance(before, list) and isinstance(after, list):
         before, after = dict(enumerate(before)), dict(enumerate(after))
-    if isinstance(before, dict) and isinstance(after, dict):
+    if isinstance(before, dict) and isinstance(after, dict) and path.count(".") < DEEPEST:
         for key in dict.fromkeys((*before, *after)):
             yield from _changed(before.get(key), after.get(key), f"{path}.{key}".lstrip("."))
     else:

@@ -228,5 +228,7 @@ def _cell(value: Any, column: Column, factor: float) -> str:
     if isinstance(value, int) and factor == 1.0 and column.format == ".5g":
         return str(value)
     text = format(factor * value, column.format)
+    if text.endswith("inf"):
+        return f"{text}inite"  # the ratio of two waves, one of which is zero by symmetry
     large = "e+0" in text and abs(float(text)) < 1e6  # '30' for '3e+01'
     return f"{float(text):{'+' * text.startswith('+')}.0f}" if large else text

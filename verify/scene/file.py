@@ -1,7 +1,6 @@
 """Scene files as plain tables: TOML read once, values set by `--set`, copies under another name; and the beam alone."""
 
 import re
-import tomllib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,23 +8,27 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from verify.convert import convert, entry_of, structs_of, typed
+from verify.convert import RULE, convert, entry_of, structs_of, toml, typed
 from verify.errors import InputError, near_name, raise_all, shown
-from verify.files import exists
+from verify.files import exists, read_text
 from verify.problem.beam import Beam
 from verify.problem.phrase import PREFIX, beam_table
 
 DATA = Path(__file__).parent / "data"
 STARTER = DATA / "starter.toml"
 MAX_SENTENCES = 30  # errors of one scene that are listed
+LARGEST = 5_000_000  # bytes of a scene, which Python's reader of TOML takes seconds to read
 SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --json > verify.schema.json` writes the file."""
+
+
+_NAME = {RULE: "at most 120 letters, digits, dots, _ and -, with a letter or digit first"}
 
 
 class NamedBeam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The keys of a scene that a command on the beam alone reads."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120, extra=_NAME)]
     """Name of the scene and of its reports."""
     title: str = ""
     """Heading of its report."""
@@ -76,24 +79,11 @@ def read_tables(name_or_path: str | Path) -> dict[str, Any]:
 
 def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file. Raises InputError where it is none."""
-    text = read_text(path)
+    text = read_text(path, "scene", LARGEST)
     try:
-        return tomllib.loads(text)
+        return toml(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
-
-
-def read_text(path: Path) -> str:
-    """The text of a scene file. Raises InputError where it cannot be read."""
-    exists(path, "scene")
-    if path.exists() and not (path.is_file() or path.is_dir()):
-        raise InputError(f"scene file {str(path)!r} is a pipe or a device: write the scene to a file")
-    try:
-        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
-    except OSError as error:
-        raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+        raise InputError(f"scene = {shown(str(path))} is not TOML: {error}") from None
 
 
 def key_of(assignment: str) -> str:
@@ -166,7 +156,7 @@ def copy_with_name(text: str, name: str) -> str:
 
 def starter_with(tables: dict[str, Any]) -> str:
     """The starter with its comments, other tables for name, title and beam, and no gates, which are its own beam's."""
-    head, _, tail = read_text(STARTER).partition("[[gate]]")[0].partition("[beam]")
+    head, _, tail = read_text(STARTER, "scene").partition("[[gate]]")[0].partition("[beam]")
     return head.partition("name =")[0] + toml_text(tables) + "\n" + tail.partition("\n\n")[2]
 
 

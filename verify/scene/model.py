@@ -11,6 +11,7 @@ from verify.actuators.on_beam import BeamInTime, beam_in_time
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
+from verify.convert import RULE
 from verify.errors import InputError, raise_all
 from verify.formatting import one_line
 from verify.problem.beam import Beam, PointForce, check_frequency
@@ -120,10 +121,13 @@ class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         check_number("expect.im", self.im, "in the quantity's unit")
 
 
+_ID = "letters, digits, _ and -, with a letter or digit first"
+
+
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What gates and claims share: a quantity of interest and limits of its value."""
 
-    id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", extra={RULE: _ID})]
     """Letters, digits, _ and -; the name in `--set gate.ID.within=...` and in pytest."""
     quantity: str
     """Name of the quantity, see `verify quantities`."""

@@ -23,7 +23,7 @@ from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.analysis.verdict import Margin, badness, missing
 from verify.errors import InputError, shown
 from verify.estimate import as_text
-from verify.files import exists, write_whole
+from verify.files import MESH, append, exists, readable, write_whole
 from verify.parallel import completed, versions, workers
 from verify.quantities.base import QUANTITIES
 from verify.report.result import Column, Figure, Result, Table
@@ -80,7 +80,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         # unbuffered: an interrupt comes before or after a whole line
         with open(file or os.devnull, "ab", buffering=0) as out, workers(len(todo) - 1) as executor:
             for i, line in completed(_evaluate, tasks, executor, first_here=True):
-                out.write(line)
+                append(out, line, "--to")
                 lines[todo[i]] = line
                 progress(f"combination {len(lines)} of {len(combinations)}")
         if file:
@@ -136,7 +136,7 @@ def _header(study: Sweep, tables: Mapping[str, Any]) -> bytes:
 
 def _lines(file: Path, header: bytes) -> dict[int, bytes]:
     """Lines by number of the combinations that a file has; a new file gets its header. Raises InputError."""
-    text = file.read_bytes() if exists(file, "--to") and file.is_file() else b""
+    text = readable(file, "--to", MESH).read_bytes() if exists(file, "--to") else b""
     first, *lines = text.splitlines(keepends=True) or [header]
     lines = [line for line in lines if line.endswith(b"\n")]  # a kill may leave half of one
     try:
