@@ -35,10 +35,10 @@ def engine_chain(
 ) -> Result:
     """Joints and links of a beam as a chain of rigid bodies, with the frequency errors of exactly this chain.
 
-    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` at `mode`. `wall`: rule of the
-    joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1. `path`: file to
-    write, .xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links
-    (m, kg, kg m^2) and frequencies (Hz). Raises InputError.
+    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` at all modes up to `mode`.
+    `wall`: rule of the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode
+    1. `path`: file to write, .xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N
+    m/rad, N m s), links (m, kg, kg m^2) and frequencies (Hz). Raises InputError.
     """
     check_integer("mode", mode, 1, 100)
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
@@ -51,12 +51,12 @@ def engine_chain(
 
 
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
-    """The smallest number of links that is within the error at a mode, and so is the next one tried."""
+    """The smallest number of links that is within the error at all modes up to one, and so is the next one tried."""
     count, first = max(len(beam.pieces), mode + 1, 2), 0
     while count <= MOST_LINKS:
         tried = describe(beam, count, wall=wall, in_space=in_space)
         errors = [tried.errors(axis, mode) for axis in tried.axes]
-        worst = max(abs(error_by_mode[-1]) if len(error_by_mode) >= mode else 1.0 for error_by_mode in errors)
+        worst = max(float(abs(one).max()) if len(one) >= mode else 1.0 for one in errors)
         if worst <= error and first:
             return first
         first = count if worst <= error else 0
