@@ -11,7 +11,7 @@ from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pa
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import Data, Identification, identify, spectrum
-from verify.compare.reading import FrequencyList, ModeShapes
+from verify.compare.reading import MOST, FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
 from verify.compare.sorting import BENDING, Sorted, rigid_of, sort_list
 from verify.errors import InputError
@@ -58,7 +58,7 @@ def compare(
     beam, options, read = scene.beam, options or Options(), listed
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
-            check_integer(field, getattr(options, field), 1)
+            check_integer(field, getattr(options, field), 1, MOST)
     elastic = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
     listed, rigid, macs, hertz = elastic.listed, elastic.rigid, elastic.macs, elastic.listed.hertz
     bending = np.array(elastic.motions) == BENDING
@@ -155,7 +155,10 @@ def _required(data: Data, fits: Identification, options: Options) -> list[tuple[
     n_modes = max(mode, data.n_modes)
 
     def error(candidate: Candidate, size: int) -> float:
-        hertz = frequencies_hz(candidate, beam, size, n_modes)
+        try:
+            hertz = frequencies_hz(candidate, beam, size, n_modes)
+        except InputError:  # fewer parts than pieces
+            return np.inf
         exact = frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1]
         return abs(float(hertz[mode - 1]) / float(exact) - 1.0) if len(hertz) >= mode else np.inf
 

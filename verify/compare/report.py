@@ -1,5 +1,6 @@
 """The result of a comparison: modes, candidates, faults, required N and acceptance as tables; one figure."""
 
+from math import pi
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -10,6 +11,7 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven, not_default
 from verify.analysis.verdict import Margin, per_cent, void
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
+from verify.compare.effects import CAUSES
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
@@ -34,7 +36,24 @@ POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
-GRAVITY = 9.80665
+_ROOTS = {f"{g:g}": g**0.5 for g in (9.80665, 9.81, 386.09, 386.4)}  # m/s^2 and in/s^2, as programs have them
+FACTORS = {
+    **{f"weight for mass, 1/sqrt(g), g = {g}": 1.0 / root for g, root in _ROOTS.items()},
+    **{f"mass for weight, sqrt(g), g = {g}": root for g, root in _ROOTS.items()},
+    "metres for inches": 0.0254,
+    "inches for metres": 1.0 / 0.0254,
+    "kg for t, 1/sqrt(1000)": 1e3**-0.5,
+    "t for kg, sqrt(1000)": 1e3**0.5,
+    "radians for degrees, pi/180": pi / 180.0,
+    "degrees for radians, 180/pi": 180.0 / pi,
+    "mm for m, or E in MPa": 1e-3,
+    "m for mm, or MPa as Pa": 1e3,
+    "E in GPa": 10.0**-4.5,
+    "GPa as Pa": 10.0**4.5,
+    "rad/s for Hz, 2 pi": 2.0 * pi,
+    "Hz for rad/s, 1/(2 pi)": 0.5 / pi,
+}
+"""Common factors of lists with the confusion that causes them."""
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
 RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
@@ -71,7 +90,7 @@ def result_of(
     """
     best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
     claimed = fits.status in ("identified", "ambiguous")
-    misread = claimed and kind in ("missing", "extra")
+    misread = claimed and (kind in ("missing", "extra", "tension") or best.fault.label == "beam.tension")
     faults = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * misread + warnings
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
@@ -86,10 +105,14 @@ def result_of(
         summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
     nearer = fits.tested[0]
     if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
-        summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
+        agrees = data.agrees(nearer)
+        why = "Within the digits, but of too few entries for its parameters" if agrees else "Nearer"
+        far = "" if agrees else f", not within the digits: rms difference {nearer.rms:.2g}"
+        summary += f" {why}: {_title(nearer, beam)}{far}."
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    if claimed and {fit.candidate.wall for fit in others} <= {best.candidate.wall} and (change := _change(best, beam)):
+    chains = {(fit.candidate.wall, fit.candidate.joints, fit.count) for fit in (best, *others)}
+    if claimed and len(chains) == 1 and (change := _change(best, beam)):  # no joint that another of them has not
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
@@ -224,15 +247,22 @@ def value(fit: Fit, beam: Beam) -> str:
     kind = fit.fault.kind
     if kind == "count":
         return f"N = {fit.count}"
-    words = [f"{fit.parameter:.6g}"] * (kind in ("factor", "shear", "clamp")) + [fit.fault.label]
+    words = [f"{fit.parameter:.6g}"] * (kind == "factor" or kind in CAUSES) + [fit.fault.label]
+    if kind == "tension":
+        off = fit.parameter - 1.0
+        words.append(
+            f"({fit.parameter * beam.tension:.6g} N, {abs(off):.3%} of T {'left out' if off < 0.0 else 'more'})"
+        )
+    if kind == "tip":
+        whole = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
+        words.append(f"({fit.parameter * whole:.6g} kg that the scene has not)")
     if kind == "factor":
-        root, near = GRAVITY**0.5, max(fit.rms, fit.digits, 1e-5)
-        factors = {"weight for mass, 1/sqrt(g)": 1.0 / root, "mass for weight, sqrt(g)": root}
-        factors |= {"metres for inches": 0.0254, "inches for metres": 1.0 / 0.0254}
-        factors["plane strain, 1/sqrt(1 - nu^2)"] = (1.0 - beam.poissons_ratio**2) ** -0.5
+        factors = FACTORS | {"plane strain, 1/sqrt(1 - nu^2)": (1.0 - beam.poissons_ratio**2) ** -0.5}
         if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
             factors["width and thickness exchanged"] = beam.width / beam.thickness
-        names = [name for name, factor in factors.items() if abs(fit.parameter / factor - 1.0) < near]
+        offs = {name: abs(fit.parameter / factor - 1.0) for name, factor in factors.items()}
+        near = min(offs.values())  # of several values of g the nearest
+        names = [name for name, off in offs.items() if off < max(fit.rms, fit.digits, 1e-5) and off <= near + 1e-6]
         words += [f"({' or '.join(names)})"] * bool(names)
     return " ".join(word for word in words if word)
 

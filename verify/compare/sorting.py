@@ -66,7 +66,7 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
         if np.isfinite(elastic).all() and elastic.all() and (np.diff(elastic) >= 0.0).all():
             tried.append((one, rigid))
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
-    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
+    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces) and not beam.tension
     theories = THEORIES if known else (EULER,)
     solved = [frequencies_hz(Candidate(model=EXACT, theory=t), beam, None, int(numbers.max())) for t in theories]
     exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(numbers.max()))
