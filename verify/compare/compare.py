@@ -1,6 +1,7 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import product
 from typing import Any, get_args
 
@@ -83,7 +84,9 @@ def compare(
     unlike = 0 if macs is None else len(hertz) - rigid - int((macs >= LOW_MAC).sum())
     supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
     motions = beam.rigid_motions  # in space and along the axis there are more
+    gaps = ", ".join(map(str, elastic.gaps)) if fits.best.fault.kind not in ("missing", "extra") else ""
     messages = {
+        f"The list leaves out bending modes of the beam: {gaps}.": gaps,
         f"The list starts with {rigid} rigid-body motions, the beam of the scene has {motions}.": rigid
         and rigid not in ((motions, motions + 1, 2 * motions, 2 * motions + 1, 2 * motions + 2) if motions else (0,)),
         f"The values are in {listed.unit}, not in {read.unit}.": listed.unit != read.unit and read.declared,
@@ -92,7 +95,9 @@ def compare(
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
-    return result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
+    result = result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
+    aside = "; ".join(f"entry {i + 1}, {hertz[i]:.7g} Hz" for i in elastic.aside)
+    return result if not aside else replace(result, summary=f"{result.summary} Set aside, of no known motion: {aside}.")
 
 
 def _by_shape(beam: Beam, listed: FrequencyList, shapes: ModeShapes, theory: str) -> Sorted:

@@ -66,8 +66,8 @@ class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
 
     `parameter`: the factor of frequencies, kappa G or axial force, the clamp's k_r L/EI, or the mass over rho A L.
-    `differences` (k,): relative ones of the corrected list. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
-    the rounding of the list.
+    `differences` (k,): relative ones of the corrected list. `effect`: rms change of log frequency by
+    the fault. `rms` and `largest`: log differences beyond the rounding of the list.
     """
 
     candidate: Candidate
@@ -185,6 +185,8 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     close = [o for o in near if o is not best and o not in equal and data.fitted(o) <= data.fitted(best) + 1]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
+    converged = {one.fault.kind for one in (best, *close) if not one.candidate.sized}
+    close = [o for o in close if not o.candidate.sized or o.fault.kind not in converged or o.fault.kind in EXACTS]
     close = sorted(filter(data.accepts, close), key=data.score)
     status = "exact" if exact else "few" if not likely else "ambiguous" if close else "identified"
     if not data.accepts(best):

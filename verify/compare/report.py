@@ -32,6 +32,8 @@ STATUS = {
     "few": "Too few frequencies to identify a model; one of those that agree",
     "unknown": "None of the known family; nearest",
 }
+TWIN = 1e-7
+"""Difference of explanations whose frequencies are equal: that of a parameter by least squares."""
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
@@ -102,7 +104,9 @@ def result_of(
     if others:
         more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
         summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
-        summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
+        twins = all(np.allclose(best.differences, one.differences, rtol=0.0, atol=TWIN) for one in others)
+        which = "Their frequencies are equal: shapes or drawings" if twins else "More digits or modes"
+        summary += f" {which} distinguish them." * (fits.status == "ambiguous")
     nearer = fits.tested[0]
     if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
         agrees = data.agrees(nearer)

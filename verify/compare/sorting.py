@@ -25,7 +25,11 @@ LOOSE, CLOSE, BAND = 0.25, 0.05, 0.03
 """Largest log differences from the exact beam: of all modes, of the lower half in another unit, of motions in space."""
 MOST_IN_SPACE, FEWEST_SCALED = 100, 5
 """Numbers of entries that are sorted by their motion: largest, and least with a common factor."""
-BENDING, ACROSS = "bending", "bending, width"
+BENDING, ACROSS, ASIDE = "bending", "bending, width", "unknown"
+NEAR, SKIPPED = 5e-3, 8
+"""Largest log difference of the lowest entry of a list with gaps: other supports differ by more. Most modes missing."""
+OUTLIER, LEAST_OFF = 10.0, 3e-3
+"""Error of a mode over the largest of those below it, and least error, with which an entry is no such mode."""
 
 
 class Sorted(msgspec.Struct, frozen=True, eq=False):
@@ -41,6 +45,14 @@ class Sorted(msgspec.Struct, frozen=True, eq=False):
     modes: Indices
     exact: Array
     macs: Array | None = None
+    aside: tuple[int, ...] = ()
+    """Entries from 0 that are none of the known motions."""
+
+    @property
+    def gaps(self) -> tuple[int, ...]:
+        """Modes from 1 that the list leaves out below its last, where it neither numbers its entries nor has shapes."""
+        known = set(self.modes.tolist()) if self.macs is None and self.listed.numbers is None else None
+        return () if known is None else tuple(mode + 1 for mode in range(max(known)) if mode not in known)
 
 
 def rigid_of(beam: Beam, hertz: Array) -> int:
@@ -90,12 +102,33 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
             continue
         if motions := _motions(beam, planes, elastic / factor, factor, theories):
             names, modes, values = motions
-            return Sorted(one, rigid, np.arange(rigid, len(numbers)), names, modes, values[:, theories.index(theory)])
+            known = np.array([name != ASIDE for name in names])
+            entries, exact = np.arange(rigid, len(numbers)), values[known, theories.index(theory)]
+            names, aside = tuple(name for name in names if name != ASIDE), tuple(entries[~known].tolist())
+            return Sorted(one, rigid, entries[known], names, modes[known], exact, aside=aside)
+    for one, rigid in tried if listed.numbers is None else ():
+        logs = np.log(one.hertz[rigid:])
+        modes = _gaps(beam, logs, theories)
+        if modes is not None and (one.unit == listed.unit or len(logs) > FEWEST_SCALED):
+            exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(modes[-1]) + 1)[modes]
+            return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(modes), modes, exact)
     if tried and tried[0][0].unit == listed.unit:
         return by_order(*tried[0])
     if listed.hertz[rigid_of(beam, listed.hertz) :].all():
         raise InputError(f"{listed.source}: values do not ascend: sort them, or give the shapes of the modes")
     raise InputError(f"{listed.source} has zeros but no elastic mode: give elastic frequencies")
+
+
+def _gaps(beam: Beam, logs: Array, theories: tuple[str, ...]) -> Indices | None:
+    """Ascending modes (k,) of log frequencies (k,) of which some are missing; None unless each is within BAND."""
+    n = len(logs) + SKIPPED
+    if not 1 < len(logs) <= MOST_IN_SPACE:
+        return None
+    exact = np.log([frequencies_hz(Candidate(model=EXACT, theory=one), beam, None, n) for one in theories])[:, None]
+    off = np.maximum(np.maximum(exact.min(axis=0) - logs[:, None], logs[:, None] - exact.max(axis=0)), 0.0)
+    modes, least = off.argmin(axis=1), off.min(axis=1)
+    fits = (np.diff(modes) > 0).all() and least.max() < (BAND if len(logs) > 2 else NEAR) and least[0] < NEAR
+    return modes if fits else None
 
 
 def _motions(
@@ -122,7 +155,8 @@ def _motions(
             if value > top * max(factor, 1.0 / factor):
                 break
             rows.append((motion, mode, *[value] * len(theories)))
-    if len(rows) < len(hertz):
+    spare = len(hertz) // FEWEST_SCALED
+    if len(rows) + spare < len(hertz):
         return None
     exact = np.array([row[2:] for row in rows], dtype=float)
     bends = np.array([row[0] in planes for row in rows])
@@ -130,13 +164,39 @@ def _motions(
     low, high = np.log(exact.min(axis=1)) + np.minimum(apart, 0.0), np.log(exact.max(axis=1)) + np.maximum(apart, 0.0)
     logs = np.log(hertz)[:, None]
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
-    # all entries are of one theory; only motions other than bending may be missing
-    costs = [abs(logs - near) + 1e3 * (off > BAND) + BAND * ~bends for near in np.log(exact.T)]
-    at = min(
-        ((cost[pairs].sum(), *pairs) for cost in costs for pairs in [linear_sum_assignment(cost)]), key=itemgetter(0)
-    )[2]
-    missing = np.delete(bends & (high < np.log(hertz[-1]) - BAND), at)
-    names = tuple(rows[i][0] for i in at)
-    if off[np.arange(len(hertz)), at].max() > BAND or missing.any() or BENDING not in names or len(set(names)) < 2:
+    # all entries are of one theory; only motions other than bending may be missing, few entries are of no motion
+    barred, alone = np.zeros(off.shape, dtype=bool), np.full((len(hertz), spare), 8.0 * BAND)
+    for _ in range(spare + 1):
+        costs = [abs(logs - near) + 1e3 * ((off > BAND) | barred) + BAND * ~bends for near in np.log(exact.T)]
+        tables = [np.hstack([cost, alone]) for cost in costs]
+        solved = [
+            (table[pairs].sum(), pairs[1], k)
+            for k, table in enumerate(tables)
+            for pairs in [linear_sum_assignment(table)]
+        ]
+        _, at, theory = min(solved, key=itemgetter(0))
+        known = at < len(rows)
+        errors = abs(np.log(hertz)[known] - np.log(exact[at[known], theory]))
+        wrong = _outlier(np.array([rows[i][1] for i in at[known]]), errors, bends[at[known]])
+        if wrong is None:
+            break
+        entry = int(np.flatnonzero(known)[wrong])
+        barred[entry, at[entry]] = True
+    names = tuple(rows[i][0] if i < len(rows) else ASIDE for i in at)
+    missing = np.delete(bends & (high < np.log(hertz[known].max(initial=0.0)) - BAND), at[known])
+    if not known.any() or missing.any():
         return None
-    return names, np.array([rows[i][1] for i in at]), exact[at]
+    far = off[np.flatnonzero(known), at[known]].max() > BAND or barred[np.flatnonzero(known), at[known]].any()
+    if far or BENDING not in names or len(set(names)) < 2:
+        return None
+    modes = np.array([rows[i][1] if i < len(rows) else 0 for i in at])
+    return names, modes, np.array([exact[i] if i < len(rows) else np.full(exact.shape[1], np.nan) for i in at])
+
+
+def _outlier(modes: Indices, errors: Array, bends: Array) -> int | None:
+    """Index of the entry that is no bending mode: its error leaves the trend of at least three modes below it."""
+    for i in np.flatnonzero(bends)[np.argsort(modes[bends], kind="stable")].tolist():
+        below = errors[bends & (modes < modes[i])]
+        if len(below) > 2 and errors[i] > max(LEAST_OFF, OUTLIER * below.max()):
+            return i
+    return None
