@@ -28,8 +28,10 @@ MOST_IN_SPACE, FEWEST_SCALED = 100, 5
 BENDING, ACROSS, ASIDE = "bending", "bending, width", "unknown"
 NEAR, SKIPPED = 5e-3, 8
 """Largest log difference of the lowest entry of a list with gaps: other supports differ by more. Most modes missing."""
-OUTLIER, LEAST_OFF = 10.0, 3e-3
-"""Error of a mode over the largest of those below it, and least error, with which an entry is no such mode."""
+OUTLIER, LEAST_OFF, SHARE = 5.0, 3e-3, 0.25
+"""Error of a mode without its pair over the largest of those below it, and least error, with which an entry is no such
+mode: from mode 4 on that of elements of order 4 grows by a factor of 3. Distance from the common error, over that as
+a bending mode, with which it is another motion."""
 
 
 class Sorted(msgspec.Struct, frozen=True, eq=False):
@@ -176,12 +178,11 @@ def _motions(
         ]
         _, at, theory = min(solved, key=itemgetter(0))
         known = at < len(rows)
-        errors = abs(np.log(hertz)[known] - np.log(exact[at[known], theory]))
-        wrong = _outlier(np.array([rows[i][1] for i in at[known]]), errors, bends[at[known]])
+        left = np.log(hertz)[:, None] - np.log(exact[:, theory])
+        wrong = _outlier(left, at, np.array([row[1] for row in rows]), bends, pairs=planes[BENDING] == planes[ACROSS])
         if wrong is None:
             break
-        entry = int(np.flatnonzero(known)[wrong])
-        barred[entry, at[entry]] = True
+        barred[wrong, bends] = True
     names = tuple(rows[i][0] if i < len(rows) else ASIDE for i in at)
     missing = np.delete(bends & (high < np.log(hertz[known].max(initial=0.0)) - BAND), at[known])
     if not known.any() or missing.any():
@@ -193,10 +194,22 @@ def _motions(
     return names, modes, np.array([exact[i] if i < len(rows) else np.full(exact.shape[1], np.nan) for i in at])
 
 
-def _outlier(modes: Indices, errors: Array, bends: Array) -> int | None:
-    """Index of the entry that is no bending mode: its error leaves the trend of at least three modes below it."""
-    for i in np.flatnonzero(bends)[np.argsort(modes[bends], kind="stable")].tolist():
-        below = errors[bends & (modes < modes[i])]
-        if len(below) > 2 and errors[i] > max(LEAST_OFF, OUTLIER * below.max()):
+def _outlier(left: Array, at: Indices, modes: Indices, bends: Array, *, pairs: bool) -> int | None:
+    """Index of the entry that is no bending mode, by its log error `left` (entries, motions) as motion `at`.
+
+    Where bending comes in `pairs`, a single entry leaves the trend of the errors below it; elsewhere another motion has
+    the error that most of the bending modes below have.
+    """
+    bent = [i for i, motion in enumerate(at) if motion < len(bends) and bends[motion]]
+    free = np.setdiff1d(np.flatnonzero(~bends), at)
+    for k, i in enumerate(bent):
+        mode, below = modes[at[i]], np.array([left[j, at[j]] for j in bent[:k] if modes[at[j]] != modes[at[i]]])
+        if len(below) < 3:
+            continue
+        single = pairs and sum(modes[at[j]] == mode for j in bent) == 1
+        if single and abs(left[i, at[i]]) > max(LEAST_OFF, OUTLIER * abs(below).max()):
+            return i
+        off, common = left[i, at[i]], float(np.median(below))
+        if abs(off - common) > BAND and (abs(left[i, free] - common) < SHARE * abs(off - common)).any():
             return i
     return None
