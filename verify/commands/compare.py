@@ -39,7 +39,9 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
+    "--theory",
+    type=click.Choice(THEORIES),
+    help="Of the exact beam. Default: that of the list; in space, rayleigh.",
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @shared.output_options
@@ -77,7 +79,7 @@ def compare(
     if not (isinstance(limit, float | int) and limit > 0.0):
         raise InputError(f"within = {within!r}: give a relative error such as 1% or 0.01")
     loaded = load_beam(scene, overrides)
-    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory or THEORIES[0])
+    options = Options(count=count, kind=kind, mode=mode, within=limit, theory=theory)
     forms = None if shapes is None else read_shapes(Path(shapes), loaded.beam.length)
     typed_list = None if Path(words[0] if words else "").exists() else read_words(words, unit)
     if model is not None:

@@ -119,7 +119,8 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
     for joints, wall in product(STEPS if beam.stepped else (), common):
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints)
-    yield Candidate(model=CHAIN, mass="halves")
+    if not beam.uniform or set(beam.supports) != {"pinned"}:  # there whole links have the same frequencies
+        yield Candidate(model=CHAIN, mass="halves")
     for mass, wall in product(("points", "joints"), common):
         yield Candidate(model=CHAIN, mass=mass, wall=wall)
     for wall in common if not beam.tension else ():

@@ -14,19 +14,22 @@ from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, 
 from verify.compare.fit import Data, Identification, identify, spectrum
 from verify.compare.reading import MOST, FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
-from verify.compare.sorting import BENDING, Sorted, rigid_of, sort_list
+from verify.compare.sorting import ACROSS, BENDING, Sorted, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
 from verify.problem.supports import Support
 from verify.report.result import Result
 from verify.scene.file import NamedBeam
+from verify.settings import THEORIES
 from verify.validation import check_integer
 
 SPARE = 4
 """Number of modes above those of a list for the pairing of shapes."""
 ERRORS = (1e-2, 1e-3)
 """Errors for which the required N is computed; the first is the default of the accuracy."""
+FOLLOWED = 0.25
+"""Largest error against Timoshenko over that against Euler-Bernoulli of a list that follows the former."""
 SIMILAR = 0.02
 """Difference of the lower modes from those of other supports that are named."""
 
@@ -35,14 +38,15 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """Options of a comparison; None: any, for `mode` the last of the list.
 
     `count`: N of the model. `kind`: 'segments' or 'elements'. `mode`: mode for the required N. `within`: accuracy,
-    the largest relative error against the exact beam. `theory`: theory of the exact beam.
+    the largest relative error against the exact beam. `theory`: theory of the exact beam; None: Euler-Bernoulli, or
+    the one that the list follows.
     """
 
     count: int | None = None
     kind: str | None = None
     mode: int | None = None
     within: float = ERRORS[0]
-    theory: str = EULER
+    theory: str | None = None
 
 
 def compare(
@@ -60,7 +64,11 @@ def compare(
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
             check_integer(field, getattr(options, field), 1, MOST)
-    elastic = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
+
+    def sorted_by(theory: str) -> Sorted:
+        return _by_shape(beam, read, shapes, theory) if shapes else sort_list(beam, read, theory)
+
+    elastic = sorted_by(options.theory or EULER)
     listed, rigid, macs, hertz = elastic.listed, elastic.rigid, elastic.macs, elastic.listed.hertz
     bending = np.array(elastic.motions) == BENDING
     entries, modes = elastic.entries[bending], elastic.modes[bending]
@@ -77,6 +85,10 @@ def compare(
         count=options.count,
     )
     fits = identify(data, progress)
+    euler, chosen = elastic, options.theory or _followed(beam, fits, elastic, sorted_by, options.within)
+    if chosen != (options.theory or EULER):
+        elastic = sorted_by(chosen)
+    options = msgspec.structs.replace(options, theory=chosen)
     columns = [(elastic.entries + 1).tolist(), (elastic.modes + 1).tolist(), hertz[elastic.entries].tolist()]
     columns += [elastic.exact.tolist(), [None] * len(bending) if macs is None else macs.tolist(), elastic.motions]
     rows = [Entry(*cells) for cells in zip(*columns, strict=True)]
@@ -96,8 +108,30 @@ def compare(
     }
     warnings = [text for text, holds in messages.items() if holds]
     result = result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
-    aside = "; ".join(f"entry {i + 1}, {hertz[i]:.7g} Hz" for i in elastic.aside)
-    return result if not aside else replace(result, summary=f"{result.summary} Set aside, of no known motion: {aside}.")
+    notes, aside = "", "; ".join(f"entry {i + 1}, {hertz[i]:.7g} Hz" for i in elastic.aside)
+    if elastic is not euler:
+        off = f"up to {100.0 * abs(_errors(euler)).max():.2g} % off by Euler-Bernoulli"
+        notes = f" The list follows the exact beam by {chosen.capitalize()}, its errors are against that; {off}."
+    notes += f" Set aside, of no known motion: {aside}." if aside else ""
+    return replace(result, summary=result.summary + notes)
+
+
+def _errors(elastic: Sorted) -> Array:
+    """Relative errors of the bending entries, (k,)."""
+    bent = np.array([motion in (BENDING, ACROSS) for motion in elastic.motions])
+    return np.asarray(elastic.listed.hertz[elastic.entries][bent] / elastic.exact[bent] - 1.0)
+
+
+def _followed(
+    beam: Beam, fits: Identification, euler: Sorted, sorted_by: Callable[[str], Sorted], within: float
+) -> str:
+    """Timoshenko where the list is of a stocky beam and follows that theory, else Euler-Bernoulli."""
+    largest, other = abs(_errors(euler)).max(initial=0.0), THEORIES[-1]
+    claims = fits.status in ("identified", "ambiguous") and fits.best.candidate.theory == EULER
+    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
+    if claims or largest <= within or beam.tension or not known:
+        return EULER
+    return other if abs(_errors(sorted_by(other))).max() < FOLLOWED * largest else EULER
 
 
 def _by_shape(beam: Beam, listed: FrequencyList, shapes: ModeShapes, theory: str) -> Sorted:
@@ -149,7 +183,7 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> tuple[str, ...]:
 
 def _required(data: Data, fits: Identification, options: Options) -> list[tuple[Any, ...]]:
     """(candidate, mode, N for each of ERRORS or None beyond LARGEST) of the best and the usual candidates."""
-    beam, theory, mode = data.beam, options.theory, options.mode or int(data.modes.max()) + 1
+    beam, theory, mode = data.beam, options.theory or EULER, options.mode or int(data.modes.max()) + 1
     rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
     joints = "tensioned" if beam.tension else "series"
     sized = [

@@ -136,7 +136,7 @@ def result_of(
     kinds = {fit.fault.kind for fit in (best, *others)}
     if "clamp" in kinds and beam.uniform and set(beam.supports) == {"clamped", "free"}:
         warnings = [*warnings, TIP_MASS]
-    figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
+    figures = [_figure(beam, fits, rows, options.theory)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
 
 
@@ -164,7 +164,7 @@ def _change(best: Fit, beam: Beam) -> str:
     return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
 
-def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
+def _figure(beam: Beam, fits: Identification, rows: list[Entry], theory: str) -> Figure:
     """Errors of the list, the best and the next candidate."""
     best = fits.best
     following = next((fit for fit in fits.ranking[1:] if fit not in fits.equivalent), None)
@@ -172,7 +172,7 @@ def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
     n = max(row.mode for row in rows)
 
     def draw(ax: "Axes") -> None:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
+        exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, n)
         ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
         for fit, style in ((best, "-"), (following, "--")):
             if fit is not None:
@@ -182,7 +182,7 @@ def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
         ax.set(xlabel="mode", ylabel="frequency error, %")
         ax.legend()
 
-    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
+    caption = f"Errors against the exact {theory.capitalize()} beam. Points: the list. Lines: the best two candidates."
     return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 

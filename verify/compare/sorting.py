@@ -5,7 +5,6 @@ the beam in another.
 """
 
 from itertools import product
-from operator import itemgetter
 from typing import Any
 
 import msgspec
@@ -25,6 +24,10 @@ LOOSE, CLOSE, BAND = 0.25, 0.05, 0.03
 """Largest log differences from the exact beam: of all modes, of the lower half in another unit, of motions in space."""
 MOST_IN_SPACE, FEWEST_SCALED = 100, 5
 """Numbers of entries that are sorted by their motion: largest, and least with a common factor."""
+EQUAL = 1e-4
+"""Relative difference of a pair of frequencies, as meshes of solid elements have it."""
+SAME = 4
+"""Number of equal frequencies that no beam has: two planes and torsion may coincide."""
 BENDING, ACROSS, ASIDE = "bending", "bending, width", "unknown"
 NEAR, SKIPPED = 5e-3, 8
 """Largest log difference of the lowest entry of a list with gaps: other supports differ by more. Most modes missing."""
@@ -79,6 +82,9 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
         elastic = one.hertz[rigid:]  # those of rigid-body motions are rounding errors in any order
         if np.isfinite(elastic).all() and elastic.all() and (np.diff(elastic) >= 0.0).all():
             tried.append((one, rigid))
+    same = np.lib.stride_tricks.sliding_window_view(listed.values, min(SAME, len(listed.values)))
+    if len(listed.values) >= SAME and (np.ptp(same, axis=1) == 0.0)[same[:, 0] > 0.0].any():
+        raise InputError(f"{listed.source} has {SAME} equal frequencies or more: no beam has, give different modes")
     numbers = np.array(listed.numbers or range(1, len(listed.values) + 1))
     known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces) and not beam.tension
     theories = THEORIES if known else (EULER,)
@@ -104,16 +110,16 @@ def sort_list(beam: Beam, listed: FrequencyList, theory: str) -> Sorted:
             continue
         if motions := _motions(beam, planes, elastic / factor, factor, theories):
             names, modes, values = motions
-            known = np.array([name != ASIDE for name in names])
-            entries, exact = np.arange(rigid, len(numbers)), values[known, theories.index(theory)]
-            names, aside = tuple(name for name in names if name != ASIDE), tuple(entries[~known].tolist())
-            return Sorted(one, rigid, entries[known], names, modes[known], exact, aside=aside)
+            there = np.array([name != ASIDE for name in names])
+            entries, values = np.arange(rigid, len(numbers)), values[there, theories.index(theory)]
+            names, aside = tuple(name for name in names if name != ASIDE), tuple(entries[~there].tolist())
+            return Sorted(one, rigid, entries[there], names, modes[there], values, aside=aside)
     for one, rigid in tried if listed.numbers is None else ():
         logs = np.log(one.hertz[rigid:])
-        modes = _gaps(beam, logs, theories)
-        if modes is not None and (one.unit == listed.unit or len(logs) > FEWEST_SCALED):
-            exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(modes[-1]) + 1)[modes]
-            return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(modes), modes, exact)
+        found = _gaps(beam, logs, theories)
+        if found is not None and (one.unit == listed.unit or len(logs) > FEWEST_SCALED):
+            exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, int(found[-1]) + 1)[found]
+            return Sorted(one, rigid, np.arange(rigid, len(numbers)), (BENDING,) * len(found), found, exact)
     if tried and tried[0][0].unit == listed.unit:
         return by_order(*tried[0])
     if listed.hertz[rigid_of(beam, listed.hertz) :].all():
@@ -157,7 +163,7 @@ def _motions(
             if value > top * max(factor, 1.0 / factor):
                 break
             rows.append((motion, mode, *[value] * len(theories)))
-    spare = len(hertz) // FEWEST_SCALED
+    spare = (len(hertz) - 1) // 4
     if len(rows) + spare < len(hertz):
         return None
     exact = np.array([row[2:] for row in rows], dtype=float)
@@ -168,18 +174,18 @@ def _motions(
     off = np.maximum(np.maximum(low - logs, logs - high), 0.0)
     # all entries are of one theory; only motions other than bending may be missing, few entries are of no motion
     barred, alone = np.zeros(off.shape, dtype=bool), np.full((len(hertz), spare), 8.0 * BAND)
+    pairs = planes[BENDING] == planes[ACROSS]
+    twin = np.append(np.diff(hertz) < EQUAL * hertz[1:], False)  # two equal ones are of both planes
+    barred |= np.outer((twin | np.roll(twin, 1)) & pairs, ~bends)
     for _ in range(spare + 1):
         costs = [abs(logs - near) + 1e3 * ((off > BAND) | barred) + BAND * ~bends for near in np.log(exact.T)]
         tables = [np.hstack([cost, alone]) for cost in costs]
-        solved = [
-            (table[pairs].sum(), pairs[1], k)
-            for k, table in enumerate(tables)
-            for pairs in [linear_sum_assignment(table)]
-        ]
-        _, at, theory = min(solved, key=itemgetter(0))
+        solved = [linear_sum_assignment(table) for table in tables]
+        theory = int(np.argmin([table[one].sum() for table, one in zip(tables, solved, strict=True)]))
+        at = solved[theory][1]
         known = at < len(rows)
         left = np.log(hertz)[:, None] - np.log(exact[:, theory])
-        wrong = _outlier(left, at, np.array([row[1] for row in rows]), bends, pairs=planes[BENDING] == planes[ACROSS])
+        wrong = _outlier(left, at, np.array([row[1] for row in rows]), bends, pairs=pairs)
         if wrong is None:
             break
         barred[wrong, bends] = True
@@ -201,7 +207,7 @@ def _outlier(left: Array, at: Indices, modes: Indices, bends: Array, *, pairs: b
     the error that most of the bending modes below have.
     """
     bent = [i for i, motion in enumerate(at) if motion < len(bends) and bends[motion]]
-    free = np.setdiff1d(np.flatnonzero(~bends), at)
+    free = np.setdiff1d(np.flatnonzero(np.logical_not(bends)), at)
     for k, i in enumerate(bent):
         mode, below = modes[at[i]], np.array([left[j, at[j]] for j in bent[:k] if modes[at[j]] != modes[at[i]]])
         if len(below) < 3:
