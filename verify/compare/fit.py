@@ -175,9 +175,11 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
     most = AMBIGUOUS * hypot(best.rms, data.floor)
     near = [one for one in every if hypot(one.rms, data.floor) <= most and data.agrees(one)]
-    exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
-    if exact:
-        best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
+    plain_ones = [one for one in near if not one.candidate.sized]
+    exact = [one for one in plain_ones if one.fault.kind in EXACTS]
+    plain_ones = [one for one in plain_ones if one.fault.kind == best.fault.kind and data.accepts(one)]
+    if firm := exact or plain_ones:  # the exact beam comes before a chain that is as fine
+        best = min(firm, key=lambda one: (data.fitted(one), data.score(one)))
         ranking = [best, *(one for one in ranking if one is not best)]
     same = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
     fits_same = (best.count, round(best.parameter, 9))  # another N or parameter is another explanation
@@ -185,9 +187,7 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     close = [o for o in near if o is not best and o not in equal and data.fitted(o) <= data.fitted(best) + 1]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
-    converged = {one.fault.kind for one in (best, *close) if not one.candidate.sized}
-    close = [o for o in close if not o.candidate.sized or o.fault.kind not in converged or o.fault.kind in EXACTS]
-    close = sorted(filter(data.accepts, close), key=data.score)
+    close = sorted(filter(data.accepts, close), key=lambda one: (one.candidate.sized, data.score(one)))
     status = "exact" if exact else "few" if not likely else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"

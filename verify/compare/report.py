@@ -104,7 +104,9 @@ def result_of(
     if others:
         more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
         summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
-        twins = all(np.allclose(best.differences, one.differences, rtol=0.0, atol=TWIN) for one in others)
+        alike = [one.differences for one in others if one.candidate.sized == best.candidate.sized]
+        twins = len(alike) == len(others) and all(one.shape == best.differences.shape for one in alike)
+        twins = twins and bool((abs(np.array(alike) - best.differences) < TWIN).all())
         which = "Their frequencies are equal: shapes or drawings" if twins else "More digits or modes"
         summary += f" {which} distinguish them." * (fits.status == "ambiguous")
     nearer = fits.tested[0]
