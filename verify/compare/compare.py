@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
+from verify.analysis.verdict import Margin
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import Data, Identification, identify, spectrum
@@ -74,16 +75,8 @@ def compare(
     entries, modes = elastic.entries[bending], elastic.modes[bending]
     ordered = macs is None and bool(bending.all()) and bool((modes == entries - rigid).all())
     logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
-    data = Data(
-        beam=beam,
-        logs=logs,
-        rounding=rounding,
-        members=members,
-        entries=entries,
-        modes=modes,
-        ordered=ordered,
-        count=options.count,
-    )
+    given = {"entries": entries, "modes": modes, "ordered": ordered, "count": options.count}
+    data = Data(beam=beam, logs=logs, rounding=rounding, members=members, **given)
     fits = identify(data, progress)
     euler, chosen = elastic, options.theory or _followed(beam, fits, elastic, sorted_by, options.within)
     if chosen != (options.theory or EULER):
@@ -108,12 +101,21 @@ def compare(
     }
     warnings = [text for text, holds in messages.items() if holds]
     result = result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
-    notes, aside = "", "; ".join(f"entry {i + 1}, {hertz[i]:.7g} Hz" for i in elastic.aside)
+    aside = [
+        Margin(name=one, size=1.0, fine=0.0, limit=np.inf, is_error=False, condition=f"{one}, is no bending mode")
+        for one in elastic.unknown
+    ]
+    notes = _notes(elastic, euler, chosen)
+    return replace(result, summary=result.summary + notes, margins=[*result.margins, *aside])
+
+
+def _notes(elastic: Sorted, euler: Sorted, theory: str) -> str:
+    """Sentences on the theory that the list follows, and on entries that are set aside."""
+    notes = ""
     if elastic is not euler:
         off = f"up to {100.0 * abs(_errors(euler)).max():.2g} % off by Euler-Bernoulli"
-        notes = f" The list follows the exact beam by {chosen.capitalize()}, its errors are against that; {off}."
-    notes += f" Set aside, of no known motion: {aside}." if aside else ""
-    return replace(result, summary=result.summary + notes)
+        notes = f" The list follows the exact beam by {theory.capitalize()}, its errors are against that; {off}."
+    return f"{notes} Set aside, of no known motion: {'; '.join(elastic.unknown)}." if elastic.aside else notes
 
 
 def _errors(elastic: Sorted) -> Array:

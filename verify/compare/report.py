@@ -101,20 +101,7 @@ def result_of(
     agreement = ", within the rounding of its digits" if coarse else f", rms difference {best.rms:.2g}"
     summary = f"{STATUS[fits.status]}: {_title(best, beam)}{agreement * (fits.status != 'ambiguous')}."
     others = fits.alternatives if fits.status in ("identified", "ambiguous", "exact") else ()
-    if others:
-        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
-        summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
-        alike = [one.differences for one in others if one.candidate.sized == best.candidate.sized]
-        twins = len(alike) == len(others) and all(one.shape == best.differences.shape for one in alike)
-        twins = twins and bool((abs(np.array(alike) - best.differences) < TWIN).all())
-        which = "Their frequencies are equal: shapes or drawings" if twins else "More digits or modes"
-        summary += f" {which} distinguish them." * (fits.status == "ambiguous")
-    nearer = fits.tested[0]
-    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
-        agrees = data.agrees(nearer)
-        why = "Within the digits, but of too few entries for its parameters" if agrees else "Nearer"
-        far = "" if agrees else f", not within the digits: rms difference {nearer.rms:.2g}"
-        summary += f" {why}: {_title(nearer, beam)}{far}."
+    summary += _others(data, fits, others)
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
     chains = {(fit.candidate.wall, fit.candidate.joints, fit.count) for fit in (best, *others)}
@@ -140,6 +127,25 @@ def result_of(
         warnings = [*warnings, TIP_MASS]
     figures = [_figure(beam, fits, rows, options.theory)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
+
+
+def _others(data: Data, fits: Identification, others: tuple[Fit, ...]) -> str:
+    """Sentences on other explanations that agree, and on a nearer one that is no evidence."""
+    best, nearer, text, beam = fits.best, fits.tested[0], "", data.beam
+    if others:
+        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
+        text += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+        alike = [one.differences for one in others if one.candidate.sized == best.candidate.sized]
+        twins = len(alike) == len(others) and all(one.shape == best.differences.shape for one in alike)
+        twins = twins and bool((abs(np.array(alike) - best.differences) < TWIN).all())
+        which = "Their frequencies are equal: shapes or drawings" if twins else "More digits or modes"
+        text += f" {which} distinguish them." * (fits.status == "ambiguous")
+    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
+        agrees = data.agrees(nearer)
+        why = "Within the digits, but of too few entries for its parameters" if agrees else "Nearer"
+        far = "" if agrees else f", not within the digits: rms difference {nearer.rms:.2g}"
+        text += f" {why}: {_title(nearer, beam)}{far}."
+    return text
 
 
 def _change(best: Fit, beam: Beam) -> str:

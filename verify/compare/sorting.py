@@ -54,6 +54,11 @@ class Sorted(msgspec.Struct, frozen=True, eq=False):
     """Entries from 0 that are none of the known motions."""
 
     @property
+    def unknown(self) -> list[str]:
+        """Entries of no known motion in words."""
+        return [f"entry {i + 1}, {self.listed.hertz[i]:.7g} Hz" for i in self.aside]
+
+    @property
     def gaps(self) -> tuple[int, ...]:
         """Modes from 1 that the list leaves out below its last, where it neither numbers its entries nor has shapes."""
         known = set(self.modes.tolist()) if self.macs is None and self.listed.numbers is None else None
