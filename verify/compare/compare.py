@@ -102,7 +102,9 @@ def compare(
     warnings = [text for text, holds in messages.items() if holds]
     result = result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
     aside = [
-        Margin(name=one, size=1.0, fine=0.0, limit=np.inf, is_error=False, condition=f"{one}, is no bending mode")
+        Margin(
+            name=f"{one}, that is set aside", size=0.0, fine=-1.0, limit=np.inf, condition=f"{one}, is no bending mode"
+        )
         for one in elastic.unknown
     ]
     notes = _notes(elastic, euler, chosen)
