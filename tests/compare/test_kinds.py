@@ -43,6 +43,11 @@ def test_axial_force_of_a_list_is_told_from_that_of_the_scene(tension, status):
     assert ("69.167%" in result.summary) == (tension == 37.0)
 
 
+def test_axial_force_that_is_a_little_off_is_no_common_factor():
+    data = compared(TAUT, tensioned(TAUT, 119.0, 8), digits=4).data
+    assert (data["best"]["model"], data["best"]["fault"]["kind"], data["identified"]) == ("analytic", "tension", False)
+
+
 def test_axial_force_that_is_left_out_is_named():
     result = compared(TAUT, tensioned(TAUT, 0.0, 8), digits=6)
     best = result.data["best"]

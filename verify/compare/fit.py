@@ -240,7 +240,7 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
         cause in CAUSES and cause != "shear"
     ):  # the scan uses the effect on the exact beam, which differs from the candidate's
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
-    parts = {"factor": 0.03, "clamp": 0.1, "tip": 0.1, "tension": 0.1}.get(cause, np.inf)
+    parts = {"factor": 0.03, "clamp": 0.1, "tip": 0.1}.get(cause, np.inf)
     near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
@@ -365,7 +365,11 @@ def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
         parameter, left = fit_parameter(data.beam, cause, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
-    return _fit(data, candidate, count, fault, parameter, left, np.full(len(logs), fit.effect))
+    grid, effects = effect_of(
+        data.beam, *cause, data.n_modes
+    )  # of the fitted parameter, not of the nearest in the grid
+    removed = [np.interp(parameter, grid, effects[:, mode]) for mode in fault.modes]
+    return _fit(data, candidate, count, fault, parameter, left, np.array(removed))
 
 
 def _logs(beam: Beam, candidate: Candidate, count: int | None, n_modes: int) -> Array:
