@@ -15,7 +15,6 @@ from verify.compare.shapes import compare_shapes, read_mesh
 from verify.convert import convert
 from verify.io.mode_files import is_mesh
 from verify.report.result import Result
-from verify.settings import THEORIES
 from verify.validation import check_choice, check_number, check_type
 
 KINDS = "segments", "elements"
@@ -35,7 +34,7 @@ def compare_frequencies(
     kind: str | None = None,
     mode: int | None = None,
     within: float = 0.01,
-    theory: str = THEORIES[0],
+    theory: str | None = None,
     progress: Callable[[str], None] = lambda step: None,
 ) -> Result:
     """Identify the discretisation behind natural frequencies of a beam, and their errors against the exact beam.

@@ -34,7 +34,9 @@ from verify.validation import Relative
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
+    "--theory",
+    type=click.Choice(THEORIES),
+    help="Of the exact beam. Default: that of the list; in space, rayleigh.",
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @shared.output_options
@@ -88,7 +90,7 @@ def compare(
             kind=kind,
             mode=mode,
             within=limit,
-            theory=theory or THEORIES[0],
+            theory=theory,
             progress=step,
         )
     shared.show(result, **formats)
