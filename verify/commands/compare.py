@@ -60,6 +60,8 @@ def compare(
     FILE is a list of frequencies or a solver's output (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
     modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error is too large.
 
+    FILE may be a record of free vibration: a table with a time column, then signals.
+
     FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md).
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`

@@ -267,7 +267,7 @@ def value(fit: Fit, beam: Beam) -> str:
         )
     if kind == "tip":
         whole = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
-        words.append(f"({fit.parameter * whole:.6g} kg that the scene has not)")
+        words.append(f"({fit.parameter * whole:.6g} kg that the scene lacks)")
     if kind == "factor":
         factors = FACTORS | {"plane strain, 1/sqrt(1 - nu^2)": (1.0 - beam.poissons_ratio**2) ** -0.5}
         if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
