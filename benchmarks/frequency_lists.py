@@ -24,7 +24,7 @@ from tests.reference.closed_lists import pinned_timoshenko, written
 from tests.reference.discrete_beams import rigid_links, varying_beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed
-from verify.engines import ENGINES, chain_of
+from verify.engines.base import ENGINES, chain_of
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam, in_plane

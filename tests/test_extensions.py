@@ -11,7 +11,7 @@ import pytest
 from tests.beams import STRIP_TOML
 from verify import SegmentModel, load_scene, run_scene
 from verify.cli import status_of
-from verify.engines import ENGINES, chain_of
+from verify.engines.base import ENGINES, chain_of
 from verify.linear.registry import MODELS
 from verify.quantities.base import QUANTITIES
 from verify.studies.base import STUDIES

@@ -20,12 +20,13 @@ Unknowns are dimensionless: lengths in `unit` = L/N, stiffnesses in EI, masses i
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, replace
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import msgspec
 import numpy as np
 
 from verify.arrays import Array
+from verify.engines.description import RigidChain, rigid_chain
 from verify.errors import InputError
 from verify.linear.mesh import check_division
 from verify.problem.beam import Beam
@@ -38,9 +39,6 @@ from verify.segments.reading import corrected_reading, line_through, rigid_links
 from verify.segments.structure import ChainStructure
 from verify.settings import DEFAULT, WALLS, Attachment, Joints, Load, ModelSettings, Reading, Theory, Wall
 from verify.validation import MOST_PARTS, check_integer, python_scalar
-
-if TYPE_CHECKING:
-    from verify.engines.description import RigidChain
 
 _FEWEST_CORRECTED = 6
 """Smallest N for which the mass matrix with tensioned Timoshenko joints is positive definite at all supports."""
@@ -99,17 +97,15 @@ class SegmentModel(ChainStructure):
         """N."""
         return self.n_segments
 
-    def rigid_chain(self, *, in_space: bool = False, damping: float = 0.0) -> "RigidChain":
+    def rigid_chain(self, *, in_space: bool = False, damping: float = 0.0) -> RigidChain:
         """Joints in N m/rad, links with mass and inertia, in plain units, for other engines (`engines.writers`).
 
         `damping`: damping ratio of mode 1. Raises InputError for settings other than `wall`, and as `describe` does.
         """
-        from verify.engines.description import describe
-
         plain = SegmentModel(self.beam, self.n_segments, wall=self.wall, attachment=self.attachment)
         if replace(self, load=plain.load, reading=plain.reading) != plain:
             raise InputError("joints, grading, theory, joint_dashpot: a rigid chain has their defaults, leave them out")
-        return describe(self.beam, self.n_segments, wall=self.wall, in_space=in_space, damping=damping)
+        return rigid_chain(SegmentModel, self.beam, self.n_segments, self.wall, in_space, damping)
 
     # --- Loads and readings --------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ import pytest
 from verify.bench import Method, Question, Row, measure, result, time_at
 from verify.bench.methods import Problem, engines_slider, questions
 from verify.cli import status_of
-from verify.engines import ENGINES, missing
+from verify.engines.base import ENGINES, missing
 from verify.errors import InputError
 from verify.problem.beam import PointForce
 from verify.problem.slider import Slider

@@ -12,7 +12,8 @@ from scipy.linalg import eigh, null_space
 from verify import Beam, PointMass, PointSpring, Section, SegmentModel
 from verify.cli import status_of
 from verify.convert import convert
-from verify.engines.description import AXES, describe
+from verify.engines.describe import describe
+from verify.engines.description import AXES
 from verify.engines.writers import mjcf, write
 from verify.exact.torsion import shafts, torsion_constant, torsion_hz
 from verify.problem.beam import in_plane
@@ -97,7 +98,7 @@ def as_sdf(chain, path):
     write(chain, path / "beam.sdf")
     model = ElementTree.parse(path / "beam.sdf").find("model")
     links, joints = model.findall("link"), model.findall("joint")
-    at = np.cumsum([float(link.findtext("pose").split()[0]) for link in links])
+    at = np.array([float(link.findtext("pose").split()[0]) for link in links])
     axes = np.array([joint.findtext("axis/xyz").split() for joint in joints], float)
     turns, mass = np.array([[joint.get("type") == "revolute"] for joint in joints]), np.zeros((len(at),) * 2)
     for body, inertial in enumerate(link.find("inertial") for link in links):

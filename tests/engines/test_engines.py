@@ -8,7 +8,7 @@ from verify import SegmentModel
 from verify.chain.departure import linear_deflection
 from verify.chain.motion import step_limit
 from verify.chain.system import build_system
-from verify.engines import ENGINES, chain_of, missing
+from verify.engines.base import ENGINES, chain_of, missing
 from verify.errors import InputError
 from verify.problem.beam import PointForce
 

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from tests.engines.test_chain_files import PHRASE, STEEL, mujoco_hz
 from verify import Beam, Section, SegmentModel
 from verify.cli import status_of
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.engines.judgement import judge_file
 from verify.engines.writers import mjcf, write
 from verify.errors import InputError
@@ -82,7 +82,7 @@ def test_mass_models_are_named(tmp_path, place, factor, fault):
 
 
 def test_springdamper_overrides_the_stiffness(tmp_path):
-    text = re.sub('stiffness="[^"]*" damping="[^"]*"', 'springdamper="0.02 0.1"', mjcf(describe(STEEL, 3)))
+    text = re.sub('stiffness="[^"]*" damping="[^"]*"', 'springdamper="0.02 0.1"', mjcf(describe(STEEL, 14)))
     with pytest.raises(InputError, match="mj_saveLastXML"):
         judged(tmp_path, text)
 
@@ -115,7 +115,7 @@ def test_public_models():
     # bodies between two hinges at one place have 5 % of the mass and a quarter of the inertia
     assert [one["faults"][0] for one in tether] == [wall_label("full")] * 2
     assert [[text.split()[0] for text in one["faults"][1:]] for one in tether] == [["inertia", "centre"]] * 2
-    assert "cancel at mode 1" in judge_file(DATA / "hose.xml", None).warnings[0]
+    assert any("cancel at mode 1" in text for text in judge_file(DATA / "hose.xml", None).warnings)
     errors = [one["error"][0] for one in (*rod, *hose, *tether)]
     assert errors == pytest.approx([0.3709, -0.0356, -0.1383, -0.1383], abs=1e-4)
 
@@ -214,7 +214,7 @@ END = HINGE.format(x=0.21, k=5, more="")
     (PAIR.format(END).replace("axis", 'armature="1e-6" axis', 1), "has an armature"),
     (PAIR.format(END.replace(" 0 0", " .1 0", 1)), "no straight line"),
     (PAIR.format("") + '</worldbody><equality><joint joint1="j0"/></equality><worldbody>', "has an equality"),
-    ("<body><joint/><geom/></body>", "not readable, ValueError"),
+    ("<body><joint/><geom/></body>", "size 0 must be positive in geom"),
     (re.sub(r"(<joint[^>]*/>)(<geom[^>]*/>)(<body.*</body>)</body>$", r"\2\3\1</body>", PAIR.format("")),
      "not in its text in order"),
 ])  # fmt: skip

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from tests.beams import ABSTRACT, mass, spring, supported
 from verify import Beam, ExactModel, PointMass, PointSpring, Section, SegmentModel
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.errors import InputError
 from verify.settings import WALLS, WallRule
 

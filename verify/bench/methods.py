@@ -21,7 +21,7 @@ from verify.chain.system import build_system
 from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.simulate import simulate
 from verify.elements.stock import stock_frequency_hz
-from verify.engines import ENGINES, chain_of, missing
+from verify.engines.base import ENGINES, chain_of, missing
 from verify.errors import InputError, near_name
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce

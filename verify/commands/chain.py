@@ -20,7 +20,8 @@ from verify.commands.shared import (
     show,
 )
 from verify.convert import typed
-from verify.engines.description import MOST_LINKS, RigidChain, describe
+from verify.engines.describe import describe
+from verify.engines.description import MOST_LINKS, RigidChain
 from verify.engines.judgement import judge_file
 from verify.engines.writers import data, table, write
 from verify.errors import InputError, printable

@@ -6,7 +6,7 @@ import click
 
 from verify.commands.chain import fewest
 from verify.commands.shared import CHAINS, BeamCommand, overrides_option, progress, scene_argument
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.engines.writers import write as write_chain
 from verify.errors import printable
 from verify.io.data import Request

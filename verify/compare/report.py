@@ -115,7 +115,7 @@ def result_of(
 
 def _change(best: Fit, beam: Beam) -> str:
     """The joints to change in a chain with a wrong rule at the wall or at steps, N m/rad; empty without one."""
-    from verify.engines.description import describe
+    from verify.engines.describe import describe
 
     wall, texts = best.candidate.wall or "", []
     try:

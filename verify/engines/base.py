@@ -10,7 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import RigidChain, describe
+from verify.engines.describe import describe
+from verify.engines.description import RigidChain
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.registry import Registry

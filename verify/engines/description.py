@@ -12,7 +12,7 @@ springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the 
 wavenumber k.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -26,7 +26,7 @@ from verify.exact.torsion import shafts, torsion_hz
 from verify.problem.beam import Beam, in_plane
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
-from verify.settings import DEFAULT, WALLS, Theory
+from verify.settings import WALLS, Theory
 from verify.validation import check_choice, check_integer, check_number, check_type
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
 """Rotation about -y, z and x; deflections in z and y."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
+DENSE = 150
+"""N from which a few modes take less time by Lanczos' method than all of them."""
 
 
 class Hinge(msgspec.Struct, frozen=True):
@@ -162,7 +164,7 @@ class RigidChain:
 
     def frequencies_hz(self, axis: Axis = "bending", n_modes: int | None = None) -> Array:
         """Elastic frequencies of the chain, (n_modes,) or all, ascending, Hz."""
-        return _frequencies(self, axis)[:n_modes]
+        return _frequencies(self, axis, n_modes if self.count > DENSE and n_modes else None)[:n_modes]
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the exact beam by `theory`, or of its shaft, (n_modes,), Hz."""
@@ -192,8 +194,15 @@ class RigidChain:
 
 
 @lru_cache(maxsize=16)
-def _frequencies(chain: RigidChain, axis: Axis) -> Array:
-    """All of `RigidChain.frequencies_hz`."""
+def _frequencies(chain: RigidChain, axis: Axis, few: int | None = None) -> Array:
+    """`RigidChain.frequencies_hz`: all, or a `few` of a chain from a wall on."""
+    springs = np.array([spring for *_, spring in chain.unknowns(axis)])
+    if few and few < chain.count // 4 and not chain.closed and springs.all():
+        from scipy.sparse.linalg import eigsh
+
+        mass, root = chain.matrices(axis)[0], 1.0 / np.sqrt(springs)
+        flexible = eigsh(mass * np.outer(root, root), few, return_eigenvectors=False, v0=root)
+        return np.asarray(np.sort(0.5 / (pi * np.sqrt(flexible))))
     loose = int(set(chain.beam.supports) == {"free"}) if axis == "torsion" else in_plane(chain.beam, axis).rigid_motions
     return small_motion_hz(*chain.matrices(axis), chain.constraints(axis), loose)
 
@@ -214,16 +223,10 @@ def small_motion_hz(mass: Array, stiffness: Array, constraints: Array, loose: in
     return np.asarray(np.sqrt(1.0 / values - shift) / (2.0 * pi))
 
 
-def describe(
-    beam: Beam, count: int, *, wall: str = DEFAULT.wall, in_space: bool = False, damping: float = 0.0
+def rigid_chain(
+    made: Callable[..., Any], beam: Beam, count: int, wall: str, in_space: bool = False, damping: float = 0.0
 ) -> RigidChain:
-    """The chain of `count` links of a beam. Raises InputError for what rigid links and springs do not model.
-
-    `wall`: a rule whose joint 0 is at the wall. `damping`: damping ratio of the first mode about every axis. Joint 0 is
-    at the end with the stronger support.
-    """
-    from verify.segment_model import SegmentModel
-
+    """`describe` with the chain `made` by `SegmentModel` in each plane."""
     check_type("beam", beam, Beam)
     beam.check_features("a chain for an engine", ("section", "mass", "spring"), "give forces in the engine")
     check_choice("wall", wall, [name for name, rule in WALLS.items() if not rule.first])
@@ -238,7 +241,7 @@ def describe(
     series = tuple(PointSpring(position=s.position, rotational=s.rotational) for s in behind)
     unloaded, rule = msgspec.structs.replace(beam, mass=(), spring=series), WALLS[wall]
     linear = "full" if rule.fault else wall  # `SegmentModel` has no rule that is a fault: its weight follows below
-    models = {a: SegmentModel(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
+    models = {a: made(in_plane(unloaded, a), count, wall=linear) for a in AXES[: 1 + in_space]}
     chain, parts, unit = models["bending"].chain, models["bending"].links, models["bending"].unit
     springs = {axis: m.beam.bending_stiffness / unit / m.chain.compliances for axis, m in models.items()}
     walls = [end for end, support in zip((0, count), beam.supports, strict=True) if support == "clamped" and rule.fault]

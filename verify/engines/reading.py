@@ -1,25 +1,26 @@
-"""MJCF, SDF and URDF files as bodies and joints at rest, and the straight chain of rigid links in them.
+"""MJCF, SDF and URDF files as bodies and joints at rest.
 
 MJCF is compiled by MuJoCo, which resolves defaults, includes and the inertias of geoms. SDF and URDF are read by the
 standard library; the springs of URDF are those of Gazebo's extension.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import AXES, Axis
 from verify.errors import InputError, one_line, shown
 
 SLIDE = "is a slide or a free base"
-ROUND = (3, 5)
-"""Types of geoms of MuJoCo: capsule, cylinder."""
-STRAIGHT = 1e-3
-"""Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
+ROUND, BOX = (3, 5), 6
+"""Types of geoms of MuJoCo: capsule, cylinder; box."""
+SPIN = 1e-6
+"""Negative principal inertia over the largest one that rounding of a file's digits explains."""
+LIMITS = ("lower", "-"), ("upper", "")
+"""Ends of the range of a joint and the sign of their defaults."""
 
 
 class Move(NamedTuple):
@@ -38,7 +39,7 @@ class Move(NamedTuple):
 class Solid(NamedTuple):
     """A rigid body in the world: parent (-1: the world), origin, mass, centre, inertia about it (3, 3).
 
-    `radius`: of the cylinder or capsule that is drawn for it, m, else 0.
+    What is drawn for it: `radius` of the cylinder or capsule, m, else 0; `shape`: squares of half lengths, (3, 3).
     """
 
     name: str
@@ -49,20 +50,7 @@ class Solid(NamedTuple):
     inertia: Array
     moves: tuple[Move, ...]
     radius: float = 0.0
-
-
-class Line(NamedTuple):
-    """The chain in one bending plane, N joints with a link beyond each. SI.
-
-    A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
-    mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms.
-    """
-
-    axis: Axis
-    joints: list[str]
-    springs: Array
-    links: Array
-    solid: bool
+    shape: Array = np.zeros((3, 3))
 
 
 def read(path: Path) -> tuple[str, list[Solid], Array]:
@@ -70,30 +58,68 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
 
     Gravity of SDF and URDF is that of an empty world.
     """
-    earth = np.array([0.0, 0.0, -9.81])
+    gravity = np.array([0.0, 0.0, -9.81])
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
-            return root.tag, *_mjcf(path)
-        if root.tag == "sdf":
-            return root.tag, _xml(next(root.iter("model")), path.name, None), earth
-        if root.tag == "robot":
-            springs = {one.get("reference", ""): one.findtext("springStiffness") for one in root.findall("gazebo")}
-            return root.tag, _xml(root, path.name, springs), earth
-    except InputError:
-        raise
-    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError, StopIteration) as error:
+            solids, gravity = _mjcf(path, root)
+        elif root.tag == "sdf":
+            solids = _xml(next(root.iter("model"), root), None)
+        elif root.tag == "robot":
+            solids = _xml(root, {one.get("reference", ""): one for one in root.findall("gazebo[springStiffness]")})
+        else:
+            raise InputError(f"its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
+        _check(solids)
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from None
+    except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError) as error:
         raise InputError(f"{path.name}: not readable, {type(error).__name__}: {one_line(str(error))}") from None
-    raise InputError(f"{path.name}: its root element is {shown(root.tag)}, give MJCF, SDF or URDF")
+    return root.tag, solids, gravity
 
 
-def _mjcf(path: Path) -> tuple[list[Solid], Array]:
-    """The bodies at the angles where the springs have no moment, and gravity."""
+def _check(solids: list[Solid]) -> None:
+    """Raise InputError for values that no body and no spring has."""
+    if not any(one.moves for one in solids):
+        raise InputError("it has no joints, give a chain of bodies with hinges and springs")
+    for one in solids:
+        for move in one.moves:
+            if not 0.0 <= move.stiffness < np.inf:
+                raise InputError(f"joint {shown(move.joint)}: stiffness = {move.stiffness!r}, give N m/rad, 0 or more")
+        if not (0.0 <= one.mass < np.inf and np.isfinite(one.inertia).all() and np.isfinite(one.centre).all()):
+            raise InputError(f"{shown(one.name)}: its mass or inertia is negative or no number, give kg and kg m^2")
+        if (spin := np.linalg.eigvalsh(one.inertia))[0] < -SPIN * spin[-1]:
+            raise InputError(
+                f"{shown(one.name)}: its inertia has the principal value {spin[0]:.3g} kg m^2, give none below 0"
+            )
+
+
+def _compiled(path: Path, root: ElementTree.Element) -> Any:
+    """MuJoCo's model of a file. Raises InputError."""
     try:
         import mujoco
     except ImportError:
-        raise InputError(f"{path.name}: MJCF is compiled by MuJoCo, install it: pip install mujoco") from None
-    model = mujoco.MjModel.from_xml_path(str(path.resolve()))
+        raise InputError("MJCF is compiled by MuJoCo, install it: pip install mujoco") from None
+    for one in root.iter():
+        for key, value in one.attrib.items():
+            if key != "name" and {"nan", "+nan", "-nan"} & {*value.lower().split()}:
+                name = one.get("name") or next(above.get("name", "") for above in root.iter() if one in [*above])
+                raise InputError(f"{one.tag} {shown(name)}: {key} = {shown(value)}, give finite numbers")
+    try:
+        return mujoco.MjModel.from_xml_path(str(path.resolve()))
+    except ValueError as error:
+        text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML ").removeprefix("Error: ")
+        if root.find(".//composite") is not None:
+            text = "composite, which MuJoCo 4 lacks: write its bodies and joints out by mj_saveLastXML of MuJoCo 3"
+        raise InputError(f"MuJoCo does not compile it, {text}") from None
+
+
+def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array]:
+    """The bodies at the angles where the springs have no moment, and gravity."""
+    model = _compiled(path, root)
+    import mujoco
+
+    if not model.njnt:
+        return [], np.array(model.opt.gravity)
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos_spring
@@ -122,10 +148,15 @@ def _mjcf(path: Path) -> tuple[list[Solid], Array]:
         inertia = (own * model.body_inertia[b]) @ own.T
         place, up = data.xpos[b].copy(), int(model.body_parentid[b]) - 1
         name, mass = model.body(b).name or f"body {b}", float(model.body_mass[b])
-        drawn = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
-        radii = [float(model.geom_size[i, 0]) for i in drawn if model.geom_type[i] in ROUND]
-        own_moves, radius, centre = tuple(moves(b)), max(radii, default=0.0), data.xipos[b].copy()
-        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius))
+        radius, shape = 0.0, np.zeros((3, 3))
+        for i in range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b]):
+            half, turn = np.array(model.geom_size[i]), data.geom_xmat[i].reshape(3, 3)
+            if round_one := int(model.geom_type[i]) in ROUND:
+                half, radius = half[[0, 0, 1]], max(radius, float(half[0]))
+            if round_one or model.geom_type[i] == BOX:
+                shape = max(shape, (turn * half**2) @ turn.T, key=np.trace)
+        own_moves, centre = tuple(moves(b)), data.xipos[b].copy()
+        solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius, shape))
     return solids, np.array(model.opt.gravity)
 
 
@@ -136,13 +167,26 @@ def _value(one: ElementTree.Element | None, path: str) -> str:
     return "" if at is None else at.get(last) or (at.findtext(last) or "").strip()
 
 
-def _pose(one: ElementTree.Element | None) -> Array:
+def _numbers(one: ElementTree.Element, path: str, default: str, *counts: int) -> list[float]:
+    """As many finite numbers as one of `counts`, by default 1. Raises InputError."""
+    words = _value(one, path) or default
+    try:
+        values = [float(word) for word in words.split()]
+    except ValueError:
+        values = []
+    if len(values) not in (counts or (1,)) or not np.isfinite(values).all():
+        remedy = " or ".join(map(str, counts)) + " finite numbers" if counts else "a finite number"
+        raise InputError(f"{one.tag} {shown(one.get('name', ''))}: {path} = {shown(words)}, give {remedy}")
+    return values
+
+
+def _pose(one: ElementTree.Element, within: str = "") -> Array:
     """The transformation (4, 4) of an element's origin (URDF) or pose (SDF): x y z, roll pitch yaw."""
-    words = _value(one, "pose") or f"{_value(one, 'origin/xyz') or '0 0 0'} {_value(one, 'origin/rpy')}"
-    if len(words.split()) > 6:
-        raise ValueError("a pose by a quaternion, give roll, pitch and yaw")
-    x, y, z, roll, pitch, yaw = [*map(float, words.split()), 0.0, 0.0, 0.0][:6]
-    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, "pose/degrees") == "true" else 1.0
+    if _value(one, within + "pose"):
+        x, y, z, roll, pitch, yaw = [*_numbers(one, within + "pose", "", 6, 3), 0.0, 0.0, 0.0][:6]
+    else:
+        (x, y, z), (roll, pitch, yaw) = (_numbers(one, f"{within}origin/{key}", "0 0 0", 3) for key in ("xyz", "rpy"))
+    pose, unit = np.eye(4), np.pi / 180.0 if _value(one, within + "pose/degrees") == "true" else 1.0
     for angle, i, k in ((yaw, 0, 1), (pitch, 2, 0), (roll, 1, 2)):
         turn, c, s = np.eye(4), np.cos(unit * angle), np.sin(unit * angle)
         turn[[i, k, i, k], [i, k, k, i]] = c, c, -s, s
@@ -151,137 +195,98 @@ def _pose(one: ElementTree.Element | None) -> Array:
     return pose
 
 
-def _xml(model: ElementTree.Element, name: str, springs: dict[str, str | None] | None) -> list[Solid]:
-    """The links of a model of SDF, or of URDF with `springs` of its joints."""
-    mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
-    links = {one.get("name", ""): one for one in model.findall("link")}
-    joints = {mark + one.get("name", ""): one for one in model.findall("joint")}
-    frames = {one.get("name", ""): one for one in model.findall("frame")} | joints | links
-    ends = {
-        key: [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
-        for key, one in joints.items()
-    }
-    above = {child: (key, parent) for key, (parent, child) in ends.items()}
-    if len(above) < len(ends):
-        raise InputError(f"{name}: a link is the child of two joints: closed loops are not read, open them")
-    places: dict[str, Array] = dict.fromkeys(("", "__model__", "world"), np.eye(4))
-
-    def place(frame: str) -> Array:
-        if frame not in places:
-            base = ends[frame][springs is None] if frame in joints else frames[frame].get("attached_to", "")
-            base = above.get(frame, ("",))[0] if springs is not None and frame in links else base
-            places[frame] = place(_value(frames[frame], "pose/relative_to") or base) @ _pose(frames[frame])
-        return places[frame]
-
-    order, solids = list[str](), list[Solid]()
-    while fresh := [key for key in links if key not in order and above.get(key, ("", "world"))[1] in ("world", *order)]:
-        order += fresh
-    for key in order:
-        at, one, (joint, parent) = place(key), links[key], above.get(key, ("", ""))
-        kind, moves, inertial = joints[joint].get("type", "") if joint else "fixed", [], one.find("inertial")
-        mass = float(_value(inertial, "mass/value") or _value(inertial, "mass") or 0)
-        if kind not in ("fixed", "revolute", "continuous", "prismatic"):
-            raise InputError(f"{name}: joint {shown(joint)} is of type {shown(kind)}, give hinges in its place")
-        if kind != "fixed":
-            if not mass:
-                raise InputError(f"{name}: link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
-            axis, turn, word = joints[joint].find("axis"), place(joint), joint[len(mark) :]
-            old = "__model__" * (_value(axis, "use_parent_model_frame") in ("1", "true"))
-            frame = place(_value(axis, "xyz/expressed_in") or old or joint)
-            about = frame[:3, :3] @ np.array((_value(axis, "xyz") or "1 0 0").split(), dtype=float)
-            own = _value(axis, "dynamics/spring_stiffness") if springs is None else springs.get(word)
-            moves = [Move(word, turn[:3, 3], about, float(own or 0.0), SLIDE * (kind == "prismatic"))]
-        centre = at @ _pose(inertial)
-        six = [float(_value(inertial, f"inertia/i{pair}") or 0.0) for pair in ("xx", "xy", "xz", "yy", "yz", "zz")]
-        inertia = centre[:3, :3] @ np.array(six)[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
-        up = order.index(parent) if parent in order else -1
-        radii = [float(_value(shape, "radius") or 0.0) for kind in ("cylinder", "capsule") for shape in one.iter(kind)]
-        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), max(radii, default=0.0)))
-    return solids
-
-
-def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
-    """The hinges and bodies, the link first, of each rigid part of the chain with springs, from the wall on.
-
-    A first link fixed to the wall has no hinges. Raises InputError for branches and for what else acts on it.
-    """
-    owner, up = list[int](), dict[int, int]()
-    for i, one in enumerate(solids):
-        above = owner[one.parent] if one.parent >= 0 else -1
-        owner.append(i if one.moves else above)
-        up |= {i: above} if one.moves else {}
-    sprung = [i for i in up if any(move.stiffness > 0.0 for move in solids[i].moves)]
-    if not sprung:
-        raise InputError(f"{name}: no hinge has a stiffness, give springs (in URDF by gazebo/springStiffness)")
-    chain = sprung[:1]
-    while up[chain[0]] >= 0:
-        chain.insert(0, up[chain[0]])
-    while below := [i for i in up if up[i] == chain[-1]]:
-        if len(below) > 1:
-            raise InputError(f"{name}: {shown(solids[chain[-1]].name)} carries {len(below)} bodies: the chain branches")
-        chain += below
-    if other := set(sprung) - set(chain):
-        raise InputError(f"{name}: {shown(solids[min(other)].name)} has springs beyond the first chain, give one chain")
-    for move in (move for i in chain for move in solids[i].moves if move.bound):
-        raise InputError(f"{name}: joint {shown(move.joint)} {move.bound}: take it out, hinges and springs are judged")
-    parts = list[tuple[list[Move], list[Solid]]]()
-    for i in chain:
-        own, members = list(solids[i].moves), [one for k, one in enumerate(solids) if owner[k] == i]
-        before = parts.pop() if parts and np.allclose(parts[-1][0][-1].at, own[0].at, atol=1e-6) else ([], [])
-        parts.append((before[0] + own, members + before[1]))
-    if len(parts) > 1 and (base := solids[chain[0]].parent) >= 0:
-        ahead, first, held = parts[1][0][-1].at, parts[0][0][-1].at, solids[base]
-        density = parts[0][1][0].mass / np.linalg.norm(ahead - first)
-        for start in (held.origin, 2.0 * held.centre - first):  # the frame of a link may be at its centre
-            if abs(held.mass - density * (reach := np.linalg.norm(first - start))) < 0.05 * density * reach:
-                return [([], [held._replace(origin=start)]), *parts]
-    return parts
-
-
-def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain in bending in each plane of its hinges. Raises InputError for what is no straight chain."""
-    parts = _chain(solids, name)
-    mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
-    places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
-    along = (places[-1] - places[0]) / (np.linalg.norm(places[-1] - places[0]) or 1.0)
-    x, centres = (places - places[0]) @ along, np.array([one.centre for one in mains])
-    off = [places - places[0] - np.outer(x, along), centres - places - np.outer((centres - places) @ along, along)]
-    if not along.any() or max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * x[-1]:
-        raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
-    masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
-    last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
-    if abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
-        last = float(steps[-1])  # a body of the end moves the centre of mass
-    across = next((one.axis for one in hinges if one.stiffness and abs(one.axis @ along) < STRAIGHT), along)
-    turned = [across, np.cross(along, across), along]
-    if across is along or any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
-        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
-    whole = [_joined(members) for _, members in parts]
-    masses, centre = np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along
-    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
-    apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
-    found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
-    for axis, about in zip(AXES[:2], turned[:2], strict=True):
-        own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
-        if not any(move.stiffness for moves in own for move in moves):
-            continue
-        for j, moves in enumerate(own[1:], 1):
-            if len(moves) != 1 or not moves[0].stiffness:
-                text = f"has no hinge with a stiffness for {axis}: a chain begins at a wall"
-                raise InputError(f"{name}: {shown(mains[j].name)} {text}")
-        springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
-        links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
-        joints = [moves[0].joint if moves else "" for moves in own]
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid))
+def _named(model: ElementTree.Element, tag: str, mark: str = "") -> dict[str, ElementTree.Element]:
+    """Elements by `mark` and name. Raises InputError where a name is missing or there twice."""
+    found = dict[str, ElementTree.Element]()
+    for i, one in enumerate(model.findall(tag), 1):
+        if not (name := one.get("name", "")) or mark + name in found:
+            raise InputError(f"{tag} {i} has {'the name of another' if name else 'no name'}, give each its own")
+        found[mark + name] = one
     return found
 
 
-def _joined(members: list[Solid]) -> Solid:
-    """One body of those that move together, of the name of the first."""
-    mass = sum(one.mass for one in members)
-    centre = np.sum([one.mass * one.centre for one in members], axis=0) / mass
-    inertia = np.zeros((3, 3))
-    for one in members:
-        arm = one.centre - centre
-        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return members[0]._replace(mass=mass, centre=centre, inertia=inertia)
+def _xml(model: ElementTree.Element, springs: dict[str, ElementTree.Element] | None) -> list[Solid]:
+    """The links of a model of SDF, or of URDF with `springs` of its joints."""
+    mark = "" if springs is None else "joint "  # in URDF a joint may have the name of a link
+    links, joints = _named(model, "link"), _named(model, "joint", mark)
+    above, bases, below = dict[str, tuple[str, str]](), dict[str, str](), dict[str, list[str]]()
+    for key, one in joints.items():
+        ends = [_value(one, f"{end}/link") or _value(one, end) for end in ("parent", "child")]
+        for end, name in zip(("parent", "child"), ends, strict=True):
+            if name not in links and (end, name) != ("parent", "world"):
+                text = f"its {end} is {shown(name)}" if name else f"it has no {end}"
+                raise InputError(f"joint {shown(one.get('name', ''))}: {text}, give the name of a link")
+        if ends[1] in above:
+            raise InputError(f"link {shown(ends[1])} is the child of two joints: closed loops are not read, open them")
+        above[ends[1]], bases[key] = (key, ends[0]), ends[springs is None]
+    frames = _named(model, "frame")
+    bases |= {key: one.get("attached_to", "") for key, one in frames.items()}
+    bases |= {} if springs is None else {child: key for child, (key, _) in above.items()}
+    place = _places(frames | joints | links, bases)
+    for key in links:
+        below.setdefault(above.get(key, ("", "" if key == "world" else "world"))[1], []).append(key)
+    order = [*below.get("", []), *below.get("world", [])]
+    for key in order:  # grows
+        order += below.get(key, []) if key != "world" else []
+    if len(order) < len(links):
+        raise InputError(f"link {shown(min(set(links) - set(order)))}: its joints lead round to itself, open the loop")
+    number = {key: i for i, key in enumerate(order)}
+    solids = list[Solid]()
+    for key in order:
+        at, one, (joint, parent) = place(key), links[key], above.get(key, ("", ""))
+        mass, moves = _numbers(one, "inertial/mass/value" if springs is not None else "inertial/mass", "0")[0], []
+        if joint and joints[joint].get("type", "") != "fixed":
+            if not mass:
+                raise InputError(f"link {shown(key)} has no inertial and a mesh no mass, give mass and inertia")
+            moves = list(_moves(joints[joint], joint, place, springs))
+        centre = at @ _pose(one, "inertial/")
+        six = np.ravel([_numbers(one, f"inertial/inertia/i{d}", "0") for d in ("xx", "xy", "xz", "yy", "yz", "zz")])
+        inertia = centre[:3, :3] @ six[[[0, 1, 2], [1, 3, 4], [2, 4, 5]]] @ centre[:3, :3].T
+        radii = [_numbers(shape, "radius", "0")[0] for kind in ("cylinder", "capsule") for shape in one.iter(kind)]
+        radius, up = max(radii, default=0.0), number.get(parent, -1)
+        solids.append(Solid(key, up, at[:3, 3], mass, centre[:3, 3], inertia, tuple(moves), radius))
+    return solids
+
+
+def _places(every: dict[str, ElementTree.Element], bases: dict[str, str]) -> Callable[[str], Array]:
+    """The place (4, 4) in the model by the name of a frame; `bases`: frames that they are in without a name of one."""
+    known, above = dict.fromkeys(("", "__model__", "world"), np.eye(4)), list[str]()
+
+    def place(frame: str) -> Array:
+        if frame not in known:
+            if frame not in every:
+                raise InputError(f"{shown(above[-1])} is placed in the frame {shown(frame)}, which is missing")
+            if frame in above:
+                raise InputError(f"the frames {', '.join(map(shown, above))} are placed in each other, open the loop")
+            above.append(frame)
+            base = _value(every[frame], "pose/relative_to") or bases.get(frame, "")
+            known[frame] = place(base) @ _pose(every[frame])
+            above.pop()
+        return known[frame]
+
+    return place
+
+
+def _moves(
+    joint: ElementTree.Element, key: str, place: Callable[[str], Array], springs: dict[str, ElementTree.Element] | None
+) -> Iterator[Move]:
+    """The hinges of a joint of SDF, or of URDF with `springs`; the second of a universal joint is 'name axis2'."""
+    name, kind, at = joint.get("name", ""), joint.get("type", ""), place(key)
+    if kind not in ("revolute", "continuous", "prismatic", "universal"):
+        raise InputError(f"joint {shown(name)} is of type {shown(kind)}, give hinges in its place")
+    for axis in ("axis", "axis2")[: 1 + (kind == "universal")]:
+        bound, within = SLIDE * (kind == "prismatic"), f"{axis}/" if springs is None else ""
+        old = "__model__" * (_value(joint, f"{axis}/use_parent_model_frame") in ("1", "true"))
+        frame = place(_value(joint, f"{axis}/xyz/expressed_in") or old or key)
+        about = frame[:3, :3] @ _numbers(joint, f"{axis}/xyz", "0 0 1" if springs is None else "1 0 0", 3)
+        if not (size := np.linalg.norm(about)):
+            raise InputError(f"joint {shown(name)}: {axis}/xyz is zero, give a direction")
+        one, paths = joint, [f"{axis}/dynamics/spring_{word}" for word in ("stiffness", "reference")]
+        if springs is not None:
+            one, paths = springs.get(name, joint), ["springStiffness", "springReference"]
+        stiffness, reference = (_numbers(one, path, "0")[0] for path in paths)
+        low, high = (_numbers(joint, f"{within}limit/{end}", f"{sign}1e16")[0] for end, sign in LIMITS)
+        at_limit, rubs = low >= 0.0 or high <= 0.0, _numbers(joint, f"{within}dynamics/friction", "0")[0]
+        bound = bound or "is at a limit" * (kind != "continuous" and at_limit) or "has dry friction" * bool(rubs)
+        bound = bound or f"has a spring at rest at {reference:.4g} rad" * bool(stiffness and reference)
+        yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound)

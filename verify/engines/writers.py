@@ -21,6 +21,8 @@ DEEPEST = 496
 """Largest number of nested bodies that MuJoCo's reader takes."""
 MASSLESS = 1e-11
 """Mass of a body between two hinges at one place over that of its link, in formats that demand one."""
+LEAST = 2e-15, 2e-14
+"""Its least mass, kg, and inertia, kg m^2, twice those that MuJoCo takes."""
 MODES = 3
 _MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
 _MJCF_BODY = (
@@ -28,8 +30,8 @@ _MJCF_BODY = (
     '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
 )
 _SDF = (
-    '<sdf version="1.9"><model name="beam">\n',
-    '<link name="{body}"><pose relative_to="{frame}">{offset!r} 0 0 0 0 0</pose><inertial>'
+    '<sdf version="1.6"><model name="beam">\n',
+    '<link name="{body}"><pose>{place!r} 0 0 0 0 0</pose><inertial>'
     "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
     "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
     '<visual name="{body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
@@ -38,7 +40,7 @@ _SDF = (
     "<xyz>{direction}</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit><dynamics>"
     "<damping>{damping!r}</damping><spring_reference>0</spring_reference>"
     "<spring_stiffness>{stiffness!r}</spring_stiffness></dynamics></axis></joint>\n",
-    '<frame name="tip" attached_to="{body}"><pose>{length!r} 0 0 0 0 0</pose></frame>\n</model></sdf>\n',
+    "</model></sdf>\n",
 )
 _URDF = (
     '<robot name="beam">\n<link name="world"/>\n',
@@ -56,11 +58,11 @@ _URDF = (
 )
 
 
-def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
+def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
     """One degree of freedom after the other from joint 0 on: a body, its parent, the joint between them.
 
-    The last at a joint moves the link, those before it a body without mass. `offset`: x, m, of
-    the joint in the parent.
+    The last at a joint moves the link, those before it a body almost without mass, whose inertia the link lacks where
+    it is `in_parts`. `offset`: x, m, of the joint in the parent.
     """
     beam, parent, offset = chain.beam, "world", chain.joints[0].position
     steps = np.cumsum([section.length for section in beam.section[:-1]])
@@ -74,16 +76,20 @@ def tree(chain: RigidChain) -> Iterator[dict[str, Any]]:
         # a hundredth of the length where unknown
         across = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
         size, half = (" ".join(repr(scale * one) for one in (link.length, *across)) for scale in (1.0, 0.5))
+        small = max(MASSLESS, LEAST[1] / min(link.inertia))
         for name, kind, direction, stiffness, damping in moves:
             last = name == moves[-1][0]
-            body, share = (f"link{j}", 1.0) if last else (f"link{j}_{name}", MASSLESS)
+            body, share = (
+                (f"link{j}", 1.0 - small * in_parts * (len(moves) - 1)) if last else (f"link{j}_{name}", small)
+            )
+            mass = link.mass if last else max(MASSLESS * link.mass, LEAST[0])
             yield {
                 **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
                 **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
-                **{"mass": share * link.mass, "centre": link.centre * last, "length": link.length},
+                **{"mass": mass, "centre": link.centre * last, "length": link.length},
                 **{"inertia": tuple(share * one for one in link.inertia)},
                 **{"middle": 0.5 * link.length, "size": size, "half": half},
-                **{"colour": COLOURS[j % 2], "frame": "__model__" if parent == "world" else parent},
+                **{"colour": COLOURS[j % 2], "place": joint.position},
             }
             parent, offset = body, 0.0
         offset = link.length
@@ -151,7 +157,7 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
 def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
     """The chain in SDF, for Gazebo and Drake, or in URDF, whose springs are an extension of Gazebo, by its texts."""
     head, body, tail = text
-    moves = list(tree(chain))
+    moves = list(tree(chain, in_parts=True))
     bodies = "".join(body.format(**one) for one in moves)
     return f'<?xml version="1.0"?>\n<!--\n{notes(chain)}\n-->\n{head}{bodies}{tail.format(**moves[-1])}'
 

@@ -1,0 +1,245 @@
+"""Files of other people: unequal joints, sections that lie the other way, formats and typing errors."""
+
+import json
+import re
+import warnings
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+from scipy.linalg import eigh
+
+from tests.engines.test_chain_files import STEEL, hertz, mujoco_hz
+from verify import Beam
+from verify.cli import status_of
+from verify.engines.describe import describe
+from verify.engines.judgement import judge_file
+from verify.engines.writers import mjcf, write
+from verify.errors import InputError
+from verify.settings import wall_label
+
+mujoco = pytest.importorskip("mujoco")
+N, K, MASS = 20, 0.0785398, 0.0785398
+"""Links of 25 mm, N m/rad, kg/m: a rod of 10 mm."""
+STRIP = replace(STEEL, length=0.7, width=0.025, thickness=0.003, youngs_modulus=206e9)
+
+
+def rod(stiffnesses, lengths=(0.5 / N,) * N, mass=MASS):
+    """MJCF of cylinders along x with hinges y0, y1, ..."""
+    text, end = "", 0.0
+    for i, (k, length) in enumerate(zip(stiffnesses, lengths, strict=True)):
+        text += f'<body pos="{end} 0 0"><joint name="y{i}" axis="0 1 0" stiffness="{k!r}"/><geom type="cylinder" '
+        text += f'size=".005" fromto="0 0 0 {length} 0 0" mass="{mass * length}" contype="0" conaffinity="0"/>'
+        end = length
+    return f'<mujoco><option gravity="0 0 0"/><worldbody>{text}{"</body>" * len(lengths)}</worldbody></mujoco>'
+
+
+def cantilever_hz(stiffness, length=0.5, elements=400):
+    """First three frequencies by Hermite elements of the EI in their middles."""
+    h = length / elements
+    one = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                    [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) / h**3  # fmt: skip
+    own = np.array([[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                    [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]) * MASS * h / 420  # fmt: skip
+    stiff, mass = np.zeros((2, 2 * elements + 2, 2 * elements + 2))
+    for i in range(elements):
+        at = slice(2 * i, 2 * i + 4)
+        stiff[at, at] += stiffness((i + 0.5) * h) * one
+        mass[at, at] += own
+    return np.sqrt(eigh(stiff[2:, 2:], mass[2:, 2:], eigvals_only=True)[:3]) / (2 * np.pi)
+
+
+EI = K * 0.5 / N
+TAPER = [10 * K * (1 - 0.9 * j / N) for j in range(N)]
+UNEQUAL = {  # stiffnesses, EI along the beam, joints off it
+    "two halves": ([K] * 10 + [10 * K] * 10, lambda x: EI if x < 0.25 else 10 * EI, ["y10"]),
+    "step in series": ([K] * 10 + [20 / 11 * K] + [10 * K] * 9, lambda x: EI if x < 0.25 else 10 * EI, []),
+    "taper": (TAPER, lambda x: 10 * EI * (1 - 0.9 * x / 0.5), []),
+    "one soft": ([K] * 9 + [0.2 * K] + [K] * 10, lambda x: EI, ["y9"]),
+    "soft next to the wall": ([K, 0.2 * K, *[K] * 18], lambda x: EI, ["y1"]),
+    "taper, one soft": ([*TAPER[:13], 0.3 * TAPER[13], *TAPER[14:]], lambda x: 10 * EI * (1 - 0.9 * x / 0.5), ["y13"]),
+}
+
+
+@pytest.mark.parametrize("case", UNEQUAL)
+def test_unequal_joints_are_a_law_and_those_off_it(case, tmp_path):
+    stiffnesses, along, odd = UNEQUAL[case]
+    (tmp_path / "rod.xml").write_text(rod(stiffnesses))
+    found = judge_file(tmp_path / "rod.xml", None, 3, corrected=tmp_path / "out.xml").data["chains"][0]
+    assert found["odd"] == odd
+    assert found["faults"][0] == wall_label("full")
+    assert found["exact_hz"] == pytest.approx(cantilever_hz(along), rel=2e-3)  # a taper has a section for each link
+    assert found["frequencies_hz"] == pytest.approx(mujoco_hz(tmp_path / "rod.xml")[:3], rel=1e-9)
+    if case == "two halves":  # series stiffness is missing at the step: right joints at the wall alone are worse
+        assert found["exact_hz"] == pytest.approx([0.362192, 2.822364, 10.397130], rel=1e-5)
+        assert found["frequencies_hz"][0] == pytest.approx(0.345812, rel=1e-5)
+        assert not (tmp_path / "out.xml").exists()
+        return
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
+    kept = [j for j in range(N) if j > 2 or f"y{j}" in odd]
+    assert np.reshape(model.jnt_stiffness, (N, -1))[kept, 0] == pytest.approx(np.array(stiffnesses)[kept], rel=1e-9)
+    if not odd:
+        assert mujoco_hz(tmp_path / "out.xml")[:3] == pytest.approx(cantilever_hz(along), rel=8e-3)
+
+
+def test_stiffnesses_of_no_law_need_a_scene(tmp_path):
+    path = tmp_path / "rod.xml"
+    path.write_text(rod((K * np.random.default_rng(3).uniform(0.5, 2.0, N)).tolist()))
+    with pytest.raises(InputError, match="give the beam that they mean as a scene"):
+        judge_file(path, None)
+    beam = Beam(length=0.5, bending_stiffness=EI, mass_per_length=MASS, supports=("clamped", "free"))
+    assert len(judge_file(path, beam).data["chains"][0]["odd"]) == 0  # a scene explains all joints: they are set
+
+
+def whip(n=25, length=0.072):
+    """Point masses at the far joints."""
+    body = f'<joint axis="0 1 0" stiffness="0.242"/><geom type="sphere" pos="{length} 0 0" size="0.02" mass="0.012"'
+    text = "".join(f'<body pos="{length * (i > 0)} 0 0">{body} contype="0" conaffinity="0"/>' for i in range(n))
+    return f'<mujoco><option gravity="0 0 0"/><worldbody>{text}{"</body>" * n}</worldbody></mujoco>'
+
+
+LONG = rod([3141.59] * 4, (0.5, 0.1, 0.1, 0.1), 0.358142)
+FILES = {"long first link": LONG, "whip": whip(), "short whip": whip(6), "wall": rod([K] * N),
+         "soft": rod([0.1 * K] + [K] * 19), "middle": rod([K, K, *[0.5 * K] * 2, *[K] * 16])}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_no_corrected_file_is_worse_at_any_mode(name, tmp_path):
+    path, out = tmp_path / "in.xml", tmp_path / "out.xml"
+    path.write_text(FILES[name])
+    result = judge_file(path, None, 4, corrected=out)
+    exact = result.data["chains"][0]["exact_hz"]
+    assert out.exists() == ("is not written" not in " ".join(result.warnings))
+    assert not (name == "long first link" and out.exists())
+    if out.exists():
+        before, after = (abs(mujoco_hz(one)[: len(exact)] / exact - 1) for one in (path, out))
+        assert all(after <= np.maximum(before, 1e-3))
+
+
+def turned(text, swaps):
+    """Axes of hinges exchanged."""
+    return re.sub('axis="([^"]*)"', lambda axis: f'axis="{swaps.get(axis[1], axis[1])}"', text)
+
+
+SPACE = mjcf(describe(STRIP, 14, in_space=True))
+PLANE = re.sub('<joint name="[^"]*(width|torsion)".*?/>', "", SPACE)
+BALL = re.sub('<joint name="([^"]*)_bending" type="hinge" axis="[^"]*"', r'<joint name="\1" type="ball"', PLANE)
+AXES = {
+    "right": (SPACE, True), "right in its plane": (PLANE, True), "one axis": (turned(PLANE, {"0 -1 0": "0 0 1"}), False),
+    "both": (turned(SPACE, {"0 -1 0": "0 0 1", "0 0 1": "0 1 0"}), False), "ball": (BALL, False),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", [STRIP, None], ids=["scene", "file"])
+@pytest.mark.parametrize("name", AXES)
+def test_stiffness_section_and_inertia_lie_the_same_way(name, scene, tmp_path):
+    text, right = AXES[name]
+    (tmp_path / "in.xml").write_text(text)
+    result = judge_file(tmp_path / "in.xml", scene, 3, corrected=tmp_path / "out.xml")
+    chains = {one["axis"]: one for one in result.data["chains"]}
+    if name == "one axis" and scene is None:
+        assert list(chains) == ["width"]  # any stiffness is a strip's that bends in its width
+        return
+    assert result.data["passed"] == right == (tmp_path / "out.xml").exists()
+    assert any(margin.leads for margin in result.margins) != right
+    if scene:
+        thin, wide = (one / (2 * np.pi) * 1.8751041**2 / 0.7**2 * np.sqrt(206e9 / 7850 / 12) for one in (0.003, 0.025))
+        for axis, one in chains.items():
+            assert one["exact_hz"][0] == pytest.approx(wide if axis == "width" else thin, rel=1e-3)
+
+
+def test_dummy_links_have_no_radius(tmp_path):
+    """The modulus of round links counts those that are round."""
+    tube = Beam(length=0.5, shape="round", diameter=0.012, youngs_modulus=12.58e6, density=1100.0,
+                supports=("clamped", "free"))  # fmt: skip
+    path = tmp_path / "hose.urdf"
+    write(describe(tube, 10, in_space=True), path)
+    text = re.sub(r'<box size="(\S+)[^"]*"/>', r'<cylinder radius="0.006" length="\1"/>', path.read_text())
+    path.write_text(re.sub(r'(<link name="link\d+_.*?)<cylinder[^>]*/>', r'\1<sphere radius="0.002"/>', text))
+    assert any("E = 0.01258 GPa" in text for text in judge_file(path, None).warnings)
+
+
+def test_universal_joints_of_sdf_are_two_hinges(tmp_path):
+    chain, path, out = describe(STRIP, 14, wall="full", in_space=True), tmp_path / "in.sdf", tmp_path / "out.sdf"
+    text, at = "", "world"
+    for i, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
+        axes = [
+            f"<{tag}><xyz>{xyz}</xyz><dynamics><spring_stiffness>{hinge.stiffness!r}</spring_stiffness></dynamics></{tag}>"
+            for tag, xyz, hinge in zip(("axis", "axis2"), ("0 -1 0", "0 0 1"), joint.hinges, strict=False)
+        ]
+        inertia = "".join(f"<i{d}{d}>{one!r}</i{d}{d}>" for d, one in zip("xyz", link.inertia, strict=True))
+        text += f'<link name="l{i}"><pose>{link.start} 0 0 0 0 0</pose><inertial><pose>{link.centre} 0 0 0 0 0</pose>'
+        text += f'<mass>{link.mass!r}</mass><inertia>{inertia}</inertia></inertial></link><joint name="j{i}" '
+        text += f'type="universal"><parent>{at}</parent><child>l{i}</child>{"".join(axes)}</joint>'
+        at = f"l{i}"
+    path.write_text(f'<sdf version="1.6"><model name="m">{text}</model></sdf>')
+    bending, width = judge_file(path, STRIP, corrected=out).data["chains"]
+    for one in (bending, width):
+        assert one["frequencies_hz"] == pytest.approx(chain.frequencies_hz(one["axis"], 5), rel=1e-9)
+    best = describe(STRIP, 14, in_space=True)
+    for one in judge_file(out, STRIP).data["chains"]:
+        assert one["frequencies_hz"] == pytest.approx(best.frequencies_hz(one["axis"], 5), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("beam", "rel"), [(STEEL, 1e-9), (replace(STEEL, length=0.1, width=0.004, thickness=0.001), 2e-5)]
+)
+def test_urdf_in_space_loads_in_mujoco_and_sdf_in_parsers_of_1_4_to_1_6(beam, rel, tmp_path):
+    chain, path = describe(beam, 20, in_space=True), tmp_path / "beam.urdf"
+    write(chain, path)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, mass)
+    joints = enumerate(json.loads((tmp_path / "beam.urdf.json").read_text())["joints"])
+    springs = {f"joint{j}_{hinge['axis']}": hinge["stiffness"] for j, one in joints for hinge in one["hinges"]}
+    own = np.sort(np.concatenate([chain.frequencies_hz(axis) for axis in chain.axes]))[:7]
+    found = hertz(mass, np.diag([springs[model.joint(j).name] for j in range(model.njnt)]))[:7]
+    assert found == pytest.approx(own, rel=rel)
+    write(chain, tmp_path / "beam.sdf")
+    text = (tmp_path / "beam.sdf").read_text()
+    assert 'version="1.6"' in text
+    assert not re.search("relative_to|attached_to|expressed_in|<frame", text)  # of 1.7 on
+
+
+def test_few_modes_of_a_long_chain_are_those_of_all():
+    chain = describe(STEEL, 300, in_space=True)
+    for axis in chain.axes:
+        assert chain.frequencies_hz(axis, 4) == pytest.approx(chain.frequencies_hz(axis)[:4], rel=1e-10)
+
+
+FAULTS = [  # file, what is replaced, by what, what the sentence names
+    ("sdf", r"(?s)\A.*\Z", "<sdf/>", "no joints"), ("xml", r"(?s)\A.*\Z", "<mujoco/>", "no joints"),
+    ("xml", 'stiffness="', 'stiffness="-', "joint0_bending"), ("xml", 'stiffness="[^"]*', 'stiffness="nan', "joint0_bending"),
+    ("xml", 'axis="[^"]*', 'axis="0 1', "axis"), ("xml", 'stiffness="[^"]*', 'stiffness="inf', "joint0_bending"),
+    ("xml", "<body", '<body><composite type="cable"/></body><body', "composite"),
+    ("sdf", "<iyy>[^<]*", "<iyy>nan", "link0"), ("sdf", "<iyy>[^<]*", "<iyy>inf", "link0"),
+    ("sdf", "<mass>[^<]*", "<mass>-1", "link0"), ("sdf", '<link name="link3"', "<link", "link 4"),
+    ("sdf", "<spring_stiffness>", "<spring_stiffness>-", "joint0_bending"),
+    ("sdf", "<spring_stiffness>[^<]*", "<spring_stiffness>nan", "joint0_bending"),
+    ("sdf", "<child>link3", "<child>lnk3", "lnk3"), ("sdf", "<xyz>[^<]*", "<xyz>0 1", "joint0_bending"),
+    ("sdf", "<xyz>[^<]*", "<xyz>0 0 0", "joint0_bending"), ("sdf", "<pose>[^<]*", "<pose>0 0 0 1", "link0"),
+    ("sdf", '<link name="link2"><pose>(.*)</pose>', r'<link name="link2"><pose relative_to="link2">\1</pose>', "link2"),
+    ("sdf", '<link name="link2"><pose', '<link name="link2"><pose relative_to="lnk"', "lnk"),
+    ("sdf", "<parent>world", "<parent>link9", "link0"), ("sdf", "<dynamics>", "<dynamics><friction>1</friction>", "friction"),
+    ("sdf", "<lower>[^<]*", "<lower>0", "limit"), ("urdf", "<dynamics", '<dynamics friction="1"', "friction"),
+    ("urdf", 'limit lower="[^"]*', 'limit lower="0.1', "limit"), ("urdf", '<child link="link3"/>', "", "joint3_bending"),
+    ("urdf", "<springStiffness>", "<springStiffness>-", "joint0_bending"), ("urdf", "</robot>", "", "line"),
+    ("urdf", 'axis xyz="[^"]*', 'axis xyz="0 1', "joint0_bending"), ("urdf", 'ixx="', 'ixx="-', "link0"),
+    ("urdf", '<child link="link3"/>', '<child link="link2"/>', "two joints"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "old", "new", "named"), FAULTS)
+def test_typing_errors_are_one_sentence_with_the_element(kind, old, new, named, tmp_path, capsys):
+    path = tmp_path / f"beam.{kind}"
+    write(describe(STEEL, 14), path)
+    text = path.read_text()
+    assert re.search(old, text)
+    path.write_text(re.sub(old, new, text, count=1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert status_of(["compare", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert named in said.replace(str(path), "")

@@ -1,0 +1,101 @@
+"""The law of EI that the joints of a chain follow: constant, stepped or smooth, and the joints off it."""
+
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.errors import InputError, shown
+
+ALIKE = 2e-3
+"""Relative difference up to which joints have the same EI."""
+RUN = 3
+"""Joints in a row of one EI that are a piece; fewer may be off the law."""
+ROUGH = 0.02
+"""Distance of EI at a joint from the cubic through its neighbours up to which the law is smooth."""
+MANY = 4
+"""Joints that a sentence names."""
+
+
+class Law(NamedTuple):
+    """EI without the joints off it, at the joints and of the links beyond, (N,), N m^2, and the numbers of those."""
+
+    kind: str
+    joints: Array
+    links: Array
+    odd: list[int]
+
+    def text(self, names: list[str], ratios: Array) -> str:
+        """The joints off the law by name, of `ratios` times its EI."""
+        if len(self.odd) > MANY:
+            low, high = min(ratios[self.odd]), max(ratios[self.odd])
+            some = f"{', '.join(names[j] for j in self.odd[:MANY])} and {len(self.odd) - MANY} more"
+            return f"joints {some} with {low:.3g} to {high:.3g} times the {self.kind} EI"
+        each = (f"joint {names[j]} with {ratios[j]:.3g} times the {self.kind} EI" for j in self.odd)
+        return ", ".join(each)
+
+
+def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
+    """The law of EI at the joints, `values` (N,). Those next to the wall, which have factors, follow from the others.
+
+    `meant`: constant EI that a scene has, N m^2, for values that have none. Raises InputError for values of no law.
+    """
+    n, first = len(values), min(3, len(values) // 3)
+    few, steps = max(1, n // 8), abs(values[first + 1 :] / values[first:-1] - 1.0) > ALIKE
+    runs = _runs(np.append(first, first + 1 + np.flatnonzero(steps)), n)
+    levels = np.array([np.median(values[a:b]) for a, b in runs])
+    lone = sorted(set(range(first, n)).difference(*(range(a, b) for a, b in runs)))
+    if len(runs) and np.ptp(levels) <= ALIKE * levels.min() and len(lone) <= few:
+        level = np.full(n, float(np.median(levels)))
+        return Law("constant", level, level, lone)
+    if meant:
+        off = [j for j in range(first, n) if abs(values[j] / meant - 1.0) > ALIKE]
+        return Law("constant", np.full(n, meant), np.full(n, meant), off)
+    if len(runs) > 1 and len(lone) <= few + len(runs) - 1:
+        ends = np.array([b for _, b in runs])
+        ahead = levels[np.minimum(np.searchsorted(ends, np.arange(n), side="right"), len(runs) - 1)]
+        before = np.append(ahead[0], ahead[:-1])
+        for a, b in itertools.pairwise(runs):  # joints between two pieces belong to both
+            before[a[1] : b[0]] = levels[runs.index(a)]
+        series = [j for j in lone if min(before[j], ahead[j]) < values[j] < max(before[j], ahead[j])]
+        joints = np.where(np.isin(range(n), series), values, ahead)
+        return Law(f"stepped in {len(runs)} pieces", joints, ahead, [j for j in lone if j not in series])
+    return _smooth(values, first, few, names)
+
+
+def _runs(starts: Array, n: int) -> list[tuple[int, int]]:
+    """Beginnings and ends of the rows of joints of one EI that are long enough."""
+    return [(int(a), int(b)) for a, b in itertools.pairwise([*starts, n]) if b - a >= RUN]
+
+
+def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
+    """The law of which each value is near the cubic through its neighbours but for a `few` joints."""
+    law, odd = values.copy(), list[int]()
+    while len(law) - first > 2 * RUN:
+        expected = _neighbours(law[first:])
+        apart = abs(law[first:] - expected) / np.maximum(abs(law[first:]), abs(expected))
+        worst = int(apart.argmax())
+        if apart[worst] < ROUGH:
+            near = np.arange(first, first + 4)
+            law[:first] = np.polyval(np.polyfit(near, law[near], 2), range(first))
+            if law.min() <= 0.0:
+                break
+            return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))
+        if len(odd) == few:
+            break
+        odd.append(first + worst)
+        law[first + worst] = expected[worst]
+    off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
+    text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
+    raise InputError(f"{text}: give the beam that they mean as a scene")
+
+
+def _neighbours(v: Array) -> Array:
+    """Each value by the cubic through the four next to it, near the ends by the parabola through three."""
+    inner = (4.0 * (v[1:-3] + v[3:-1]) - v[:-4] - v[4:]) / 6.0
+
+    def end(w: Array) -> list[float]:
+        return [3.0 * w[1] - 3.0 * w[2] + w[3], w[0] / 3.0 + w[2] - w[3] / 3.0]
+
+    return np.concatenate([end(v), inner, end(v[::-1])[::-1]])
