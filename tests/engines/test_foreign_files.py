@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from scipy.linalg import eigh
 
 from tests.engines.test_chain_files import STEEL, hertz, mujoco_hz
+from tests.engines.test_judgement import chain_text
 from verify import Beam
 from verify.cli import status_of
 from verify.engines.describe import describe
@@ -34,18 +35,16 @@ def rod(stiffnesses, lengths=(0.5 / N,) * N, mass=MASS):
     return f'<mujoco><option gravity="0 0 0"/><worldbody>{text}{"</body>" * len(lengths)}</worldbody></mujoco>'
 
 
-def cantilever_hz(stiffness, length=0.5, elements=400):
-    """First three frequencies by Hermite elements of the EI in their middles."""
-    h = length / elements
-    one = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h],
-                    [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]) / h**3  # fmt: skip
-    own = np.array([[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h],
-                    [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]) * MASS * h / 420  # fmt: skip
-    stiff, mass = np.zeros((2, 2 * elements + 2, 2 * elements + 2))
-    for i in range(elements):
+def cantilever_hz(stiffness, length=0.5, n=400):
+    """First three frequencies by n Hermite elements of the EI in their middles."""
+    h, scale = length / n, np.diag([1.0, length / n] * 2)
+    own = [[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]
+    heavy = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
+    stiff, mass = np.zeros((2, 2 * n + 2, 2 * n + 2))
+    for i in range(n):
         at = slice(2 * i, 2 * i + 4)
-        stiff[at, at] += stiffness((i + 0.5) * h) * one
-        mass[at, at] += own
+        stiff[at, at] += stiffness((i + 0.5) * h) / h**3 * scale @ own @ scale
+        mass[at, at] += MASS * h / 420 * scale @ heavy @ scale
     return np.sqrt(eigh(stiff[2:, 2:], mass[2:, 2:], eigvals_only=True)[:3]) / (2 * np.pi)
 
 
@@ -91,16 +90,12 @@ def test_stiffnesses_of_no_law_need_a_scene(tmp_path):
     assert len(judge_file(path, beam).data["chains"][0]["odd"]) == 0  # a scene explains all joints: they are set
 
 
-def whip(n=25, length=0.072):
-    """Point masses at the far joints."""
-    body = f'<joint axis="0 1 0" stiffness="0.242"/><geom type="sphere" pos="{length} 0 0" size="0.02" mass="0.012"'
-    text = "".join(f'<body pos="{length * (i > 0)} 0 0">{body} contype="0" conaffinity="0"/>' for i in range(n))
-    return f'<mujoco><option gravity="0 0 0"/><worldbody>{text}{"</body>" * n}</worldbody></mujoco>'
-
-
+WHIP = '<geom type="sphere" pos=".072 0 0" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
 LONG = rod([3141.59] * 4, (0.5, 0.1, 0.1, 0.1), 0.358142)
-FILES = {"long first link": LONG, "whip": whip(), "short whip": whip(6), "wall": rod([K] * N),
-         "soft": rod([0.1 * K] + [K] * 19), "middle": rod([K, K, *[0.5 * K] * 2, *[K] * 16])}  # fmt: skip
+FILES = {
+    "long first link": LONG, "wall": rod([K] * N), "soft": rod([0.1 * K] + [K] * 19),
+    "point masses": chain_text(25, '<joint axis="0 1 0" stiffness="0.242"/>', WHIP, ".072 0 0"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -161,29 +156,26 @@ def test_dummy_links_have_no_radius(tmp_path):
 
 def test_universal_joints_of_sdf_are_two_hinges(tmp_path):
     chain, path, out = describe(STRIP, 14, wall="full", in_space=True), tmp_path / "in.sdf", tmp_path / "out.sdf"
-    text, at = "", "world"
+    text, at, spring = "", "world", "<dynamics><spring_stiffness>{}</spring_stiffness></dynamics>"
     for i, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
-        axes = [
-            f"<{tag}><xyz>{xyz}</xyz><dynamics><spring_stiffness>{hinge.stiffness!r}</spring_stiffness></dynamics></{tag}>"
-            for tag, xyz, hinge in zip(("axis", "axis2"), ("0 -1 0", "0 0 1"), joint.hinges, strict=False)
-        ]
+        about = zip(("axis", "axis2"), ("0 -1 0", "0 0 1"), joint.hinges, strict=False)
+        axes = "".join(f"<{tag}><xyz>{xyz}</xyz>{spring.format(one.stiffness)}</{tag}>" for tag, xyz, one in about)
         inertia = "".join(f"<i{d}{d}>{one!r}</i{d}{d}>" for d, one in zip("xyz", link.inertia, strict=True))
         text += f'<link name="l{i}"><pose>{link.start} 0 0 0 0 0</pose><inertial><pose>{link.centre} 0 0 0 0 0</pose>'
         text += f'<mass>{link.mass!r}</mass><inertia>{inertia}</inertia></inertial></link><joint name="j{i}" '
-        text += f'type="universal"><parent>{at}</parent><child>l{i}</child>{"".join(axes)}</joint>'
+        text += f'type="universal"><parent>{at}</parent><child>l{i}</child>{axes}</joint>'
         at = f"l{i}"
     path.write_text(f'<sdf version="1.6"><model name="m">{text}</model></sdf>')
-    bending, width = judge_file(path, STRIP, corrected=out).data["chains"]
-    for one in (bending, width):
-        assert one["frequencies_hz"] == pytest.approx(chain.frequencies_hz(one["axis"], 5), rel=1e-9)
     best = describe(STRIP, 14, in_space=True)
-    for one in judge_file(out, STRIP).data["chains"]:
-        assert one["frequencies_hz"] == pytest.approx(best.frequencies_hz(one["axis"], 5), rel=1e-9)
+    for file, right, written in ((path, chain, out), (out, best, None)):
+        for one in judge_file(file, STRIP, corrected=written).data["chains"]:
+            assert one["frequencies_hz"] == pytest.approx(right.frequencies_hz(one["axis"], 5), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("beam", "rel"), [(STEEL, 1e-9), (replace(STEEL, length=0.1, width=0.004, thickness=0.001), 2e-5)]
-)
+SMALL = replace(STEEL, length=0.1, width=0.004, thickness=0.001)
+
+
+@pytest.mark.parametrize(("beam", "rel"), [(STEEL, 1e-9), (SMALL, 2e-5)])
 def test_urdf_in_space_loads_in_mujoco_and_sdf_in_parsers_of_1_4_to_1_6(beam, rel, tmp_path):
     chain, path = describe(beam, 20, in_space=True), tmp_path / "beam.urdf"
     write(chain, path)

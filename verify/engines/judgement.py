@@ -1,19 +1,23 @@
 """A chain of rigid links from a file of an engine against the exact beam it means: errors, corrections, verdict."""
 
+import itertools
+import re
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.arrays import Array
-from verify.engines.correction import write_corrected
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
 from verify.engines.section_axes import contradictions, planes
+from verify.engines.stiffness_law import MANY
 from verify.errors import InputError, shown
+from verify.files import whole
 from verify.problem.beam import Beam, in_plane
 from verify.problem.supports import FIXED
 
@@ -61,27 +65,25 @@ def judge_file(
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
-    every = [_assess(one, modes, within) for one in judged]
-    rows = [row for one in every for row in one.rows]
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *(one.joints for one in every)]
-    margins, warnings = [one for each in every for one in each.margins], [w for one in judged for w in one.advice]
+    each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
+    rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
+    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *joints]
+    warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
-    for clash in clashes:
-        about: dict[str, Any] = {"name": clash.text, "size": clash.size, "remedy": clash.remedy, "leads": True}
-        margins.append(Margin(**about, failure=f"{clash.text}: {per_cent(clash.size)}", fine=within, limit=within))
-    data = [one.data for one in every]
-    worse = [one.worse for one in every if one.worse]
-    warnings += _hints(solids, gravity, judged, beam) + worse
-    if corrected and (clashes or worse):
-        why = clashes[0].remedy if clashes else "it would be worse"
+    for text, size, remedy in clashes:
+        words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
+        margins.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
+    warnings += [*_hints(solids, gravity, judged, beam), *filter(None, worse)]
+    if corrected and (clashes or any(worse)):
+        why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
-        warnings.append(write_corrected(path, kind, solids, _changes(judged), corrected))
+        warnings.append(_write(path, kind, solids, _changes(judged), corrected))
     rules = [f"{one.line.axis}: {one.rule}, EI = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}."
     passed = max(float(abs(one["error"]).max()) for one in data) <= within and not clashes
-    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": data})
+    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": list(data)})
 
 
 def _changes(judged: list[Judged]) -> dict[str, float]:
@@ -90,18 +92,8 @@ def _changes(judged: list[Judged]) -> dict[str, float]:
     return {name: k for pairs in each[::-1] for name, k, old in pairs if name and abs(k - old) > SAME * k}
 
 
-class Assessed(NamedTuple):
-    """A chain next to the exact beam: rows of frequencies, its joints; `worse`: why its correct joints do not help."""
-
-    rows: list[tuple[object, ...]]
-    joints: "Table"
-    margins: list[Margin]
-    worse: str
-    data: dict[str, Any]
-
-
-def _assess(one: Judged, modes: int, within: float) -> Assessed:
-    """Errors of a chain as it is and with correct joints."""
+def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[Margin], str, dict[str, Any]]:
+    """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
     from verify.report.result import Column, Table
 
     n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(n_modes=modes)
@@ -124,20 +116,19 @@ def _assess(one: Judged, modes: int, within: float) -> Assessed:
         numbers, (old, new) = ", ".join(str(1 + mode) for mode in lost), (100.0 * x[lost[0]] for x in (errors, after))
         worse = f"errors of the file cancel at mode {numbers} in {axis}, the joints below are worse"
         worse += f" ({old:+.3g} to {new:+.3g} %): {cause}"
-    what = f"{n} links with correct joints"
     remedy = "set the joints below" + f", {cause}" * bool(one.odd) if any(changes) and not worse else cause
     if text:
         failure = f"{text}: {per_cent(size)} {where}"
         margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
     if (any(changes) and not worse) or not text:
         size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
-        what = f"{what}, but {'; '.join(one.links)}" if one.links else what
+        what = f"{n} links with correct joints" + f", but {'; '.join(one.links)}" * bool(one.links)
         margins.append(Margin(name=what, size=size, where=where, remedy=cause, **limits))
     own = one.present.beam
     about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
     about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
     about |= {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after, "odd": one.odd}
-    return Assessed(rows, joints, margins, worse, about)
+    return rows, joints, margins, worse, about
 
 
 def _cause(one: Judged) -> str:
@@ -149,7 +140,7 @@ def _cause(one: Judged) -> str:
     if one.links:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
-        return f"set joint {', '.join(one.odd[:2])} or give a scene that has it"
+        return f"set joint {', '.join(one.odd[:MANY])} or give a scene that has it"
     return "give more links"
 
 
@@ -172,3 +163,43 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
         text = f"E = {modulus:.4g} GPa, or {modulus / SQUARE:.4g} GPa if it is a square section's; check by --beam"
         hints.append(f"round links of {2e3 * radius:.4g} mm: EI is that of {text}")
     return hints
+
+
+def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], out: Path) -> str:
+    """The file with stiffnesses `new` by joint and nothing else changed; returns a sentence. Raises InputError."""
+    edits, data = list[tuple[int, int, str]](), path.read_bytes()
+    text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
+    if kind != "mujoco":
+        for name, k in new.items():
+            joint = name.removesuffix(" axis2")  # the second of a universal joint
+            within = rf"(?:(?!</joint>).)*?<axis{'2' * (joint != name)}\b" if kind == "sdf" else ""
+            tag, field, spring = ("joint", "name", "spring_s") if kind == "sdf" else ("gazebo", "reference", "springS")
+            head = rf"(?s)<{tag}\s[^>]*{field}\s*=\s*[\"']{re.escape(joint)}[\"']{within}"
+            spot = re.search(rf"{head}(?:(?!</{tag}>).)*?<{spring}tiffness>([^<]*)".encode(), text)
+            edits += [(*spot.span(1), repr(k))] if spot else []
+    else:
+        tags = [
+            tag
+            for tag in re.finditer(rb"(?s)<(?:free)?joint\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*", text)
+            if text.rfind(b"<worldbody", 0, tag.start()) > text.rfind(b"</worldbody", 0, tag.start())
+        ]
+        compiled = {move.joint: move.stiffness for one in solids for move in one.moves}
+        bodies = [[one.tag for one in body] for body in ElementTree.fromstring(data).iter("body")]
+        behind = any("joint" in names[names.index("body") :] for names in bodies if "body" in names)
+        alike = len(tags) == len(compiled) and not behind and b"springdamper" not in text  # it overrides stiffness
+        for found, (joint, present) in zip(tags, compiled.items(), strict=False):
+            named, own = (
+                re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", found[0]) for word in (b"name", b"stiffness")
+            )
+            alike &= not named or named[1].decode() == joint
+            alike &= not own or abs(float(own[1]) - present) <= 1e-9 * abs(present)
+            place = (found.start() + own.start(1), found.start() + own.end(1)) if own else (found.start() + 6,) * 2
+            if joint in new:
+                edits.append((*place, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
+        if not alike:
+            raise InputError(f"{path.name}: its joints are not in its text in order, write it by mj_saveLastXML first")
+    for start, end, word in sorted(edits, reverse=True):
+        data = data[:start] + word.encode() + data[end:]
+    with whole(out, "corrected") as part:
+        part.write_bytes(data)
+    return f"wrote {shown(str(out))}: other stiffnesses, nothing else"

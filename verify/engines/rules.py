@@ -13,7 +13,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
-from verify.engines.stiffness_law import ALIKE, Law, law_of
+from verify.engines.stiffness_law import ALIKE, ROUGH, Law, law_of
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
@@ -67,8 +67,9 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
         scale, expected = values / values[0], np.array([one.mass_per_length for one in beam.pieces])[at] * lengths
     meant = None if beam is None else float(values[0])
     rule, spacing, stiffness, law = _fitted(line, lengths / scale, expected, support, meant)
-    soft = lengths / scale * law.links[0] / law.links
-    reference, base = meant or stiffness, _half_links(soft)
+    along = (law.joints, np.ones(n)) if law.kind == "smooth" else (np.full(n, law.links[0]), law.links[0] / law.links)
+    soft = lengths / scale * along[1]
+    reference, base = meant or stiffness, _half_links(soft) * law.links[0] / along[0]
     even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
     hinged = reference / base / wall_factors((support, "free"), n, best)[:-1]
@@ -93,11 +94,8 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
-    text, names = (
-        rule if support == "clamped" else f"{support} end",
-        [line.joints[j] for j in (*law.odd, *steps) if meant is None],
-    )
-    faults = wall + odd + joints + links
+    names = [line.joints[j] for j in (*law.odd, *steps) if meant is None]
+    text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, links, advice, names)
 
 
@@ -130,7 +128,7 @@ def _fitted(line: Line, soft: Array, expected: Array, support: str, meant: float
         raise InputError("masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene")
     law = law_of(k * bases[0], line.joints, meant)
     steady = np.where(np.isin(range(n), law.odd), 1.0, k * bases[0] / law.joints)
-    rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft))
+    rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft), ROUGH if law.kind == "smooth" else ALIKE)
     for j in (1, 2) if rule == IRREGULAR and meant is None and n > 3 else ():  # or one of them is off a rule, too
         others = _rule(np.where(np.arange(n) == j, 0.0, steady), [np.ones(n)], support, _weld(soft))[0]
         if others != IRREGULAR:
@@ -207,8 +205,8 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: Array) -> Beam:
     )
 
 
-def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str, int, float]:
-    """(rule in words, spacing, EI): the first ones by which all joints have the same EI; `weld`: that of SERIES."""
+def _rule(k: Array, bases: list[Array], support: str, weld: Array, alike: float = ALIKE) -> tuple[str, int, float]:
+    """(rule in words, spacing, EI): the first ones by which all joints have EI `alike`; `weld`: that of SERIES."""
     held = bool(np.isnan(k[0]))
     names = ["rigid", ADAPTED, SERIES] if held else ["full"]
     if support == "clamped" and not held:
@@ -220,9 +218,9 @@ def _rule(k: Array, bases: list[Array], support: str, weld: Array) -> tuple[str,
     best = int(np.argmin(spreads))
     name, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
     text = wall_label(name) if name in WALLS else name
-    if spreads[best] > ALIKE:
+    if spreads[best] > alike:
         inner = (k * bases[0])[1:]
         spacing, stiffness, text = 0, float(np.median(inner)), IRREGULAR
-        if inner.std() < ALIKE * stiffness:
+        if inner.std() < alike * stiffness:
             text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l at the wall"
     return text, spacing, stiffness

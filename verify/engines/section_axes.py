@@ -5,7 +5,6 @@ squares of the sides.
 """
 
 from math import exp, log
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,14 +14,6 @@ from verify.problem.beam import Beam, in_plane
 
 APART = log(1.2)
 """Logarithm of a ratio of stiffnesses or squares of sides up to which a section is as good as square."""
-
-
-class Contradiction(NamedTuple):
-    """What contradicts in words, the relative error of a frequency that it means, what to change."""
-
-    text: str
-    size: float
-    remedy: str
 
 
 def inner_stiffness(line: Line) -> float:
@@ -58,40 +49,32 @@ def _nearest(line: Line, beam: Beam) -> Axis:
     return min(AXES[:2], key=lambda axis: abs(log(stiffness / in_plane(beam, axis).bending_stiffness)))
 
 
-def contradictions(found: list[Line], axes: list[Axis], beam: Beam | None) -> list[Contradiction]:
-    """Of the stiffnesses, the section that is drawn, the inertias and the beam."""
-    line, several = found[0], list[Contradiction]()
+def contradictions(found: list[Line], axes: list[Axis], beam: Beam | None) -> list[tuple[str, float, str]]:
+    """(in words, relative error of the lower frequency, remedy) of stiffnesses, drawn section, inertias and beam."""
+    line, several = found[0], list[tuple[str, float, str]]()
     drawn, inert = (log(one) if one > 0.0 else 0.0 for one in line.deep)
     if drawn * inert < 0.0 and min(abs(drawn), abs(inert)) > APART:
-        text = f"along hinges {line.about} the section is {_side(drawn)} as drawn, {_side(inert)} by the inertias"
-        several.append(Contradiction(text, _error(drawn - inert), "turn the geoms or the inertias"))
-    wrong = [i for i, one in enumerate(found) if beam and _nearest(one, beam) != axes[i]]
-    if beam and wrong and abs(_beam_ratio(beam)) > APART:
-        one, axis, other = found[wrong[0]], axes[wrong[0]], AXES[axes[wrong[0]] == AXES[0]]
-        stiffness, means = inner_stiffness(one), in_plane(beam, axis).bending_stiffness
-        size = _error(log(stiffness / means))
+        sides = ["deep" if one > 0.0 else "flat" for one in (drawn, inert)]
+        text = f"across hinges {line.about} the section is {sides[0]} as drawn and {sides[1]} by the inertias"
+        several.append((text, 1.0 - exp(-0.5 * abs(drawn - inert)), "turn the geoms or the inertias"))
+    if len(found) == 1:
+        other = _nearest(line, beam) if beam else axes[0]
+        if beam and other != axes[0] and abs(_beam_ratio(beam)) > APART:
+            text = f"hinges {line.about} bend the section in {axes[0]} and have the stiffness of {other}"
+            off = log(inner_stiffness(line) / in_plane(beam, axes[0]).bending_stiffness)
+            several.append((text, 1.0 - exp(-0.5 * abs(off)), f"turn them to {line.across}, or turn the section"))
+        return several
+    ratio, means = log(inner_stiffness(line) / inner_stiffness(found[1])), drawn or inert
+    if beam:
+        means = _beam_ratio(beam) * (1.0 if axes[0] == AXES[0] else -1.0)
+    source = "the beam" if beam else "the section as drawn" if drawn else "the inertias"
+    swapped = ratio * means < 0.0 and min(abs(ratio), abs(means)) > APART
+    if swapped or (abs(ratio - means) > APART and (line.ball or (means and not beam))):
+        one, two = f"hinges {line.about}", f"hinges {found[1].about}"
+        text = f"{one} are {exp(ratio):.3g} times as stiff as {two}, by {source} {exp(means):.3g} times"
         if line.ball:
-            text = f"ball joints have one EI, {stiffness:.6g} N m2, the beam has {means:.6g} in {axis}"
-            several.append(Contradiction(text, size, f"give hinges {line.about} and {line.across} in their place"))
-        else:
-            text = f"hinges {one.about} bend the section in {axis} and have the stiffness of {other}"
-            turn = f"turn them to {one.across}" if len(found) == 1 else "swap the axes of the hinges"
-            several.append(Contradiction(text, size, f"{turn}, or turn the section"))
-    elif not beam and len(found) > 1 and (drawn or inert):
-        ratio, section = log(inner_stiffness(line) / inner_stiffness(found[1])), drawn or inert
-        if abs(ratio - section) > APART:
-            sides = f"by its sides {'as drawn' if drawn else 'behind the inertias'} {exp(section):.3g} times"
-            text = f"hinges {line.about} have {exp(ratio):.3g} times the stiffness of hinges {found[1].about}, {sides}"
-            remedy = "give two hinges in place of each ball joint" if line.ball else "check the stiffnesses"
-            remedy = "swap the axes of the hinges, or turn the section" if ratio * section < 0.0 else remedy
-            several.append(Contradiction(text, _error(ratio - section), remedy))
+            text = f"ball joints have one stiffness, by {source} {one} are {exp(means):.3g} times as stiff as {two}"
+        remedy = "give two hinges in place of each" if line.ball else "correct one of them"
+        remedy = "swap the axes of the hinges, or turn the section" if swapped else remedy
+        several.append((text, 1.0 - exp(-0.5 * abs(ratio - means)), remedy))
     return several
-
-
-def _side(logarithm: float) -> str:
-    return "thin" if logarithm > 0.0 else "wide"
-
-
-def _error(logarithm: float) -> float:
-    """Relative error of the lower frequency by a ratio of stiffnesses."""
-    return 1.0 - exp(-0.5 * abs(logarithm))

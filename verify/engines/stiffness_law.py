@@ -28,12 +28,9 @@ class Law(NamedTuple):
 
     def text(self, names: list[str], ratios: Array) -> str:
         """The joints off the law by name, of `ratios` times its EI."""
-        if len(self.odd) > MANY:
-            low, high = min(ratios[self.odd]), max(ratios[self.odd])
-            some = f"{', '.join(names[j] for j in self.odd[:MANY])} and {len(self.odd) - MANY} more"
-            return f"joints {some} with {low:.3g} to {high:.3g} times the {self.kind} EI"
-        each = (f"joint {names[j]} with {ratios[j]:.3g} times the {self.kind} EI" for j in self.odd)
-        return ", ".join(each)
+        each = [f"{names[j]} ({ratios[j]:.3g} times)" for j in self.odd]
+        more = f" and {len(each) - MANY} more" * (len(each) > MANY)
+        return f"joint{'s' * (len(each) > 1)} off a {self.kind} EI: {', '.join(each[:MANY])}{more}"
 
 
 def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
@@ -42,11 +39,12 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
     `meant`: constant EI that a scene has, N m^2, for values that have none. Raises InputError for values of no law.
     """
     n, first = len(values), min(3, len(values) // 3)
-    few, steps = max(1, n // 8), abs(values[first + 1 :] / values[first:-1] - 1.0) > ALIKE
-    runs = _runs(np.append(first, first + 1 + np.flatnonzero(steps)), n)
+    few, steps = max(1, n // 5), abs(values[first + 1 :] / values[first:-1] - 1.0) > ALIKE
+    starts = [first, *(first + 1 + np.flatnonzero(steps)).tolist(), n]
+    runs = [(a, b) for a, b in itertools.pairwise(starts) if b - a >= RUN - (a == first)]  # those at the wall are more
     levels = np.array([np.median(values[a:b]) for a, b in runs])
     lone = sorted(set(range(first, n)).difference(*(range(a, b) for a, b in runs)))
-    if len(runs) and np.ptp(levels) <= ALIKE * levels.min() and len(lone) <= few:
+    if runs and np.ptp(levels) <= ALIKE * levels.min() and len(lone) <= few:
         level = np.full(n, float(np.median(levels)))
         return Law("constant", level, level, lone)
     if meant:
@@ -60,13 +58,8 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
             before[a[1] : b[0]] = levels[runs.index(a)]
         series = [j for j in lone if min(before[j], ahead[j]) < values[j] < max(before[j], ahead[j])]
         joints = np.where(np.isin(range(n), series), values, ahead)
-        return Law(f"stepped in {len(runs)} pieces", joints, ahead, [j for j in lone if j not in series])
+        return Law("stepped", joints, ahead, [j for j in lone if j not in series])
     return _smooth(values, first, few, names)
-
-
-def _runs(starts: Array, n: int) -> list[tuple[int, int]]:
-    """Beginnings and ends of the rows of joints of one EI that are long enough."""
-    return [(int(a), int(b)) for a, b in itertools.pairwise([*starts, n]) if b - a >= RUN]
 
 
 def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
@@ -75,6 +68,7 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
     while len(law) - first > 2 * RUN:
         expected = _neighbours(law[first:])
         apart = abs(law[first:] - expected) / np.maximum(abs(law[first:]), abs(expected))
+        apart[-2:] *= 0.1  # without much moment
         worst = int(apart.argmax())
         if apart[worst] < ROUGH:
             near = np.arange(first, first + 4)

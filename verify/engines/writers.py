@@ -164,7 +164,7 @@ def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
 
 def script(chain: RigidChain, engine: str) -> str:
     """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
-    moves, rows, springs = list(tree(chain)), "", ""
+    moves, rows, springs = list(tree(chain, in_parts=True)), "", ""
     for one in moves:
         kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["direction"].split()].index(True)]
         values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
