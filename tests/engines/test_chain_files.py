@@ -47,8 +47,8 @@ def hertz(mass, stiffness, held=()):
     return np.sqrt(omega2[omega2 > 1e-2]) / (2 * np.pi)
 
 
-def mujoco_hz(path):
-    """Elastic frequencies of a file by MuJoCo's mass matrix, springs, tendons and equalities."""
+def mujoco_hz(path, stiffnesses=None):
+    """Elastic frequencies of a file by MuJoCo's mass matrix, tendons and equalities, and springs of the file or by name."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_path(str(path))
     data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
@@ -59,6 +59,8 @@ def mujoco_hz(path):
         parts = slice(first, first + length)
         tendons[i, model.jnt_dofadr[model.wrap_objid[parts]]] = model.wrap_prm[parts]
     springs = np.diag(np.reshape(model.jnt_stiffness, (model.nv, -1))[:, 0])
+    if stiffnesses:
+        springs = np.diag([stiffnesses[model.joint(j).name] for j in range(model.njnt)])
     if model.ntendon:
         springs = springs + (tendons.T * np.reshape(model.tendon_stiffness, (model.ntendon, -1))[:, 0]) @ tendons
     return hertz(mass, springs, tendons[model.eq_obj1id])
@@ -82,14 +84,19 @@ def by_script(engine):
     return run
 
 
+def springs_beside(path):
+    """Stiffnesses by name of the file next to a URDF."""
+    joints = enumerate(json.loads(path.with_name(path.name + ".json").read_text())["joints"])
+    return {f"joint{j}_{hinge['axis']}": hinge["stiffness"] for j, one in joints for hinge in one["hinges"]}
+
+
 def as_urdf(chain, path):
     """In Pinocchio, with the stiffnesses of the file next to it."""
     pin = pytest.importorskip("pinocchio")
     assert "URDF has no joint springs" in write(chain, path / "beam.urdf")
     model = pin.buildModelFromUrdf(str(path / "beam.urdf"))
     mass = np.triu(pin.crba(model, model.createData(), pin.neutral(model)))
-    joints = enumerate(json.loads((path / "beam.urdf.json").read_text())["joints"])
-    springs = {f"joint{j}_{hinge['axis']}": hinge["stiffness"] for j, one in joints for hinge in one["hinges"]}
+    springs = springs_beside(path / "beam.urdf")
     return hertz(mass + np.triu(mass, 1).T, np.diag([springs.get(name, 0.0) for name in list(model.names)[1:]]))
 
 

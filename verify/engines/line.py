@@ -113,21 +113,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         joints = [moves[0].joint if moves else "" for moves in own]
         others = [np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")]
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
-        deep = _deep(mains, along, about, solid)
-        found.append(
-            Line(
-                axis,
-                joints,
-                springs,
-                np.stack(links, axis=1),
-                solid,
-                _direction(about),
-                _direction(np.cross(along, about)),
-                deep,
-                ball,
-                *others,
-            )
-        )
+        seen = _direction(about), _direction(np.cross(along, about)), _deep(mains, along, about, solid)
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball, *others))
     return found
 
 

@@ -12,8 +12,8 @@ ALIKE = 2e-3
 """Relative difference up to which joints have the same EI."""
 RUN = 3
 """Joints in a row of one EI that are a piece; fewer may be off the law."""
-ROUGH = 0.02
-"""Distance of EI at a joint from the cubic through its neighbours up to which the law is smooth."""
+ROUGH = 0.04
+"""Distance of EI at a joint from the geometric mean of its neighbours up to which the law is smooth."""
 MANY = 4
 """Joints that a sentence names."""
 
@@ -47,15 +47,15 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
     if runs and np.ptp(levels) <= ALIKE * levels.min() and len(lone) <= few:
         level = np.full(n, float(np.median(levels)))
         return Law("constant", level, level, lone)
+    level = np.full(n, float(np.median(values[first:])))
+    if np.ptp(values[first:]) < ROUGH * level[0]:
+        return Law("nearly constant", level, level, [])
     if meant:
         off = [j for j in range(first, n) if abs(values[j] / meant - 1.0) > ALIKE]
         return Law("constant", np.full(n, meant), np.full(n, meant), off)
     if len(runs) > 1 and len(lone) <= few + len(runs) - 1:
-        ends = np.array([b for _, b in runs])
-        ahead = levels[np.minimum(np.searchsorted(ends, np.arange(n), side="right"), len(runs) - 1)]
-        before = np.append(ahead[0], ahead[:-1])
-        for a, b in itertools.pairwise(runs):  # joints between two pieces belong to both
-            before[a[1] : b[0]] = levels[runs.index(a)]
+        done = np.searchsorted([b for _, b in runs], np.arange(n), side="right")
+        before, ahead = levels[np.maximum(done - 1, 0)], levels[np.minimum(done, len(runs) - 1)]
         series = [j for j in lone if min(before[j], ahead[j]) < values[j] < max(before[j], ahead[j])]
         joints = np.where(np.isin(range(n), series), values, ahead)
         return Law("stepped", joints, ahead, [j for j in lone if j not in series])
@@ -63,11 +63,13 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
 
 
 def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
-    """The law of which each value is near the cubic through its neighbours but for a `few` joints."""
+    """The law of which each value is near the geometric mean of its neighbours but for a `few` joints."""
     law, odd = values.copy(), list[int]()
     while len(law) - first > 2 * RUN:
-        expected = _neighbours(law[first:])
-        apart = abs(law[first:] - expected) / np.maximum(abs(law[first:]), abs(expected))
+        log = np.log(law[first:])
+        ends = 2.0 * log[[1, -2]] - log[[2, -3]]
+        expected = np.exp(np.concatenate([ends[:1], 0.5 * (log[:-2] + log[2:]), ends[1:]]))
+        apart = abs(law[first:] - expected) / np.maximum(law[first:], expected)
         apart[-2:] *= 0.1  # without much moment
         worst = int(apart.argmax())
         if apart[worst] < ROUGH:
@@ -83,13 +85,3 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
     raise InputError(f"{text}: give the beam that they mean as a scene")
-
-
-def _neighbours(v: Array) -> Array:
-    """Each value by the cubic through the four next to it, near the ends by the parabola through three."""
-    inner = (4.0 * (v[1:-3] + v[3:-1]) - v[:-4] - v[4:]) / 6.0
-
-    def end(w: Array) -> list[float]:
-        return [3.0 * w[1] - 3.0 * w[2] + w[3], w[0] / 3.0 + w[2] - w[3] / 3.0]
-
-    return np.concatenate([end(v), inner, end(v[::-1])[::-1]])
