@@ -128,9 +128,8 @@ def _fitted(line: Line, soft: Array, expected: Array, support: str, meant: float
         raise InputError("masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene")
     law = law_of(k * bases[0], line.joints, meant)
     steady = np.where(np.isin(range(n), law.odd), 1.0, k * bases[0] / law.joints)
-    rule, *_ = _rule(
-        steady, [np.ones(n)], support, _weld(soft), 0.5 * ROUGH if law.kind == "smooth" or not law.odd else ALIKE
-    )
+    alike = 0.5 * ROUGH if law.kind in ("smooth", "nearly constant") else ALIKE
+    rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft), alike)
     for j in (1, 2) if rule == IRREGULAR and meant is None and n > 3 else ():  # or one of them is off a rule, too
         others = _rule(np.where(np.arange(n) == j, 0.0, steady), [np.ones(n)], support, _weld(soft))[0]
         if others != IRREGULAR:
