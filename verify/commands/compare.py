@@ -1,7 +1,7 @@
 """`verify compare`: the discretisation behind natural frequencies or mode shapes of another program."""
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import click
 
@@ -15,8 +15,9 @@ from verify.errors import InputError
 from verify.io.mode_files import is_mesh
 from verify.scene.file import load_beam
 from verify.settings import THEORIES
-from verify.validation import Relative
+from verify.validation import Relative, unit
 
+Seconds = Annotated[float, unit("s")]
 TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 """Suffixes of lists of frequencies, in addition to those that are of no mesh."""
 
@@ -42,6 +43,8 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
     "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
+@click.option("--engine", metavar="NAME[:INTEGRATOR]", default="", help="That a chain runs in. Default: its file's.")
+@click.option("--step", metavar="TIME", help="Its time step, such as 1ms. Default: that of its file.")
 @shared.output_options
 def compare(
     scene: str,
@@ -56,6 +59,8 @@ def compare(
     within: str,
     theory: str | None,
     corrected: str | None,
+    engine: str,
+    step: str | None,
     **formats: Any,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
@@ -70,7 +75,10 @@ def compare(
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
-        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats)
+        run = {"engine": engine, "step": None if step is None else typed(step, Seconds, "step")}
+        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
+    if engine or step:
+        raise click.UsageError("--engine and --step are of a chain in an .xml, .sdf or .urdf.")
     if bool(words) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = typed(within, Relative, "within")

@@ -14,16 +14,20 @@ from verify.arrays import Array
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
+from verify.engines.running import judge_runs, motion, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
+from verify.engines.twist import judge_twist
 from verify.errors import InputError, shown
 from verify.files import whole
+from verify.formatting import with_unit
 from verify.problem.beam import Beam, in_plane
 from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
+MEANS = {"torsion": "GJ"}
 NOTICED = 0.1
 """Part of the acceptance up to which an error of a mode may grow by a correction."""
 
@@ -45,45 +49,63 @@ def judge_file(
     within: float = FINE,
     theory: str | None = None,
     corrected: Path | None = None,
+    engine: str = "",
+    step: float | None = None,
 ) -> "Result":
-    """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`.
+    """The result of the chain in a file as it runs, acceptance in `data["passed"]`: all errors are `within`.
 
     `theory`: by default "euler-bernoulli" in a plane, "rayleigh" in space where links have the rotary inertia of their
-    drawn sections. `corrected`: file to write, with correct stiffnesses. Raises InputError for another file.
+    drawn sections. `corrected`: file to write, with correct stiffnesses and a time step that runs. `engine` "NAME" or
+    "NAME:INTEGRATOR", `step` in s: in place of those of the file. Raises InputError for another file.
     """
     from verify.report.result import Column, Result, Table
 
     if corrected and corrected.suffix.lower() != path.suffix.lower():
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
-    kind, solids, gravity = read(path)
-    found = lines(solids, path.name)
+    kind, solids, gravity, own = read(path)
+    setting, every = setting_of(own, engine, step), lines(solids, path.name)
+    found = [line for line in every if line.axis != "torsion"]
     in_space = len(found) > 1 and all(line.solid for line in found)
     theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
+    twisted = [(line, judge_twist(line, judged[0].present.beam, beam)) for line in every[len(found) :]]
+    judged += [shaft for _, shaft in twisted if shaft]
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *joints]
+    lone = [motion(line, np.full(len(data[0]["error"]), np.nan), setting) for line, shaft in twisted if not shaft]
+    chains = [motion(one.line, about["exact_hz"], setting) for one, about in zip(judged, data, strict=True)] + lone
+    ran, weighed = judge_runs(chains, setting, within), under_gravity(chains, solids, gravity, within)
+    margins = [*ran.margins, *weighed, *(margins if ran.data else map(in_space_only, margins))]
+    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
         margins.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
-    warnings += [*_hints(solids, gravity, judged, beam), *filter(None, worse)]
+    warnings += [*ran.warnings, *_hints(solids, judged, beam, bool(lone)), *filter(None, worse)]
     if corrected and (clashes or any(worse)):
         why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
-        warnings.append(_write(path, kind, solids, _changes(judged), corrected))
-    rules = [f"{one.line.axis}: {one.rule}, EI = {one.stiffness:.6g} N m2" for one in judged]
+        lines_after = [one.line._replace(springs=one.springs) for one in judged]
+        right = [motion(line, one.exact, setting) for line, one in zip(lines_after, chains, strict=False)] + lone
+        last = judge_runs(right, setting, within).step
+        warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
+        warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
+    rules = [
+        f"{one.line.axis}: {one.rule}, {MEANS.get(one.line.axis, 'EI')} = {one.stiffness:.6g} N m2" for one in judged
+    ]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
-    summary = f"{sizes}; {'; '.join(rules)}."
-    passed = max(float(abs(one["error"]).max()) for one in data) <= within and not clashes
-    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": list(data)})
+    summary = f"{sizes}; {'; '.join(rules)}. {ran.words}".strip()
+    passed = max(float(abs(one["error"]).max()) for one in data) <= within and not (clashes or weighed)
+    passed &= all(one.level == "trusted" for one in ran.margins)
+    known = {"passed": passed, "chains": list(data), "run": ran.data}
+    return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
 
 def _changes(judged: list[Judged]) -> dict[str, float]:
@@ -137,6 +159,8 @@ def _cause(one: Judged) -> str:
     if long := [j for j in range(len(lengths)) if lengths[j] > 1.5 * usual]:
         names = " and ".join(f"{one.line.joints[j] or 'the wall'} ({lengths[j]:.4g} m)" for j in long[:2])
         return f"divide the link behind {names} into links of {usual:.4g} m"
+    if one.links and one.line.axis == "torsion":
+        return "give the links the polar inertia of the beam"
     if one.links:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
@@ -144,19 +168,15 @@ def _cause(one: Judged) -> str:
     return "give more links"
 
 
-def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam | None) -> list[str]:
-    """What the frequencies leave out: ball joints, gravity along the chain; the modulus that EI means for round links.
-
-    Gravity counts from a tenth of EI/L^2 on, which changes the first frequency of a cantilever by about 0.6 %.
-    """
-    hints, own, named = list[str](), judged[0].present.beam, {name for one in judged for name in one.line.joints}
-    moving = [one for one in solids if any(move.joint in named for move in one.moves)]
+def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: bool) -> list[str]:
+    """What the frequencies leave out: ball joints, torsion; the modulus that EI means for round links."""
+    hints = list[str]()
     if any(one.line.ball for one in judged):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
-    along = moving[-1].moves[0].at - moving[0].moves[0].at
-    weight = own.mass_per_length * own.length * abs(float(gravity @ along)) / float(np.linalg.norm(along))
-    if (ratio := weight * own.length**2 / judged[0].stiffness) > 0.1:
-        hints.append(f"gravity acts along the chain, its weight is {ratio:.3g} EI/L^2: the frequencies are without it")
+    elif untwisted:
+        hints.append(
+            "torsion is not judged: its springs and inertias are of no uniform shaft, give a scene with sections"
+        )
     radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9
@@ -165,8 +185,11 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
     return hints
 
 
-def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], out: Path) -> str:
-    """The file with stiffnesses `new` by joint and nothing else changed; returns a sentence. Raises InputError."""
+def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], out: Path, step: float) -> str:
+    """The file with stiffnesses `new` by joint, a time step, s, but for 0, and nothing else changed; what was written.
+
+    Raises InputError.
+    """
     edits, data = list[tuple[int, int, str]](), path.read_bytes()
     text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
     if kind != "mujoco":
@@ -198,8 +221,15 @@ def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], ou
                 edits.append((*place, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
         if not alike:
             raise InputError(f"{path.name}: its joints are not in its text in order, write it by mj_saveLastXML first")
+    if step:
+        place = rb"<max_step_size>([^<]*)" if kind == "sdf" else rb"<option\b[^>]*?\stimestep\s*=\s*[\"']([^\"']*)"
+        steps = [(*spot.span(1), repr(step)) for spot in re.finditer(place, text)]
+        if not steps and (head := re.search(rb"<mujoco\b[^>]*>", text)):
+            steps = [(head.end(), head.end(), f'\n<option timestep="{step!r}"/>')]
+        edits += steps
     for start, end, word in sorted(edits, reverse=True):
         data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:
         part.write_bytes(data)
-    return f"wrote {shown(str(out))}: other stiffnesses, nothing else"
+    what = ["other stiffnesses"] * bool(new or not step) + [f"the time step {with_unit(step, 's')}"] * bool(step)
+    return f"wrote {shown(str(out))}: {' and '.join(what)}, nothing else"

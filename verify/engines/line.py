@@ -111,7 +111,9 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
-        others = [np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")]
+        others = [
+            np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")
+        ]
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
         seen = _direction(about), _direction(np.cross(along, about)), _deep(mains, along, about, solid)
         found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball, *others))

@@ -10,11 +10,12 @@ from dataclasses import replace
 from math import floor, hypot, inf, isfinite, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import msgspec
 import numpy as np
 
 from verify.analysis.verdict import Margin, per_cent, void
 from verify.arrays import Array
-from verify.engines.integrators import TRAPEZOIDAL, scheme_of
+from verify.engines.integrators import TRAPEZOIDAL, integrator_of, scheme_of
 from verify.engines.line import Line
 from verify.engines.reading import Setting, Solid
 from verify.engines.steps import Modes, Simulated
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 NOTICED = 0.1
 """Damping by the integrator, over that of the file, from which it is named."""
+ROUNDING = 1e-12
+"""Damping ratio that is none."""
 SAG = 0.6
 """Change of the first frequency over the square of the sag by linear theory over the length.
 
@@ -53,7 +56,8 @@ class Motion(NamedTuple):
         """(elastic modes of the file and as they run, change of frequency, of the damping ratio), (m,) each."""
         part = slice(self.first, self.first + len(self.exact))
         file, run = self.file.modes, self.run.modes
-        modes = Modes(*(one[part] for one in (file.file_hz, file.file_zeta, run.hz, run.zeta)))
+        figures = (one[part] for one in (file.file_hz, file.file_zeta, run.hz, run.zeta))
+        modes = Modes(*(np.where(abs(one) < ROUNDING, 0.0, one) for one in figures))
         still = modes.file_hz == 0.0
         change = np.where(still, 0.0, modes.hz / np.where(still, 1.0, modes.file_hz) - 1.0)
         return modes, change, modes.zeta - modes.file_zeta
@@ -76,7 +80,9 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
     if name and (integrator or name.casefold() != setting.engine.casefold()):
         setting = setting._replace(engine=name, integrator=integrator)
     if setting.engine:
-        scheme_of(*setting[:2])
+        row = integrator_of(*setting[:2])
+        note = f"{row.engine} {row.setting}: {row.remark}" if row.remark else setting.note
+        setting = setting._replace(engine=row.engine, integrator=row.setting, note=note)
     if step is not None:
         check_number("step", step, "s", above=0)
     return setting if step is None else setting._replace(step=step)
@@ -108,10 +114,10 @@ def judge_runs(motions: Sequence[Motion], setting: Setting, within: float) -> Ra
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
     limit, where = worst.run.limit, f" in {worst.line.axis}" if len(motions) > 1 else ""
     steps, warnings = accurate_steps(motions, within), [setting.note] if setting.note else []
-    good = min(0.5 * limit, *steps) if limit else 0.0
-    good = _floor(good, 2) if isfinite(good) else 0.0
-    remedy = f"Time step at most {_time(good)} for {per_cent(within)}" if good else "choose another integrator"
+    good = _floor(min(0.5 * limit, *steps), 2)
     top, number = worst.run.omega_max, max(len(one.exact) for one in motions)
+    remedy = f"time step at most {_time(min(steps))} for {per_cent(within)} at mode {number}"
+    remedy = "choose another integrator" if not min(limit, *steps) else remedy * (min(steps) < limit)
     if not worst.run.stable:
         damped = " with its dashpots" if any(one.file.damping.any() for one in motions) else ""
         text = f"diverges{where} (omega_max h = {top * setting.step:.3g}, limit {top * limit:.3g}{damped})"
@@ -125,9 +131,10 @@ def judge_runs(motions: Sequence[Motion], setting: Setting, within: float) -> Ra
         warnings.append(text + ", undamped in one plane only" * (len(motions) > 1))
     bounds = [f"stable up to {_time(limit)}{where}" if isfinite(limit) else "stable at every step"]
     named = zip(("frequency", "damping"), steps, strict=True)
-    bounds += [f"{per_cent(within)} in {name} at mode {number} up to {_time(each)}" for name, each in named if each < inf]
-    engine = " ".join(word for word in setting[:2] if word)
-    words = f"{engine}, {with_unit(setting.step, 's')}: {', '.join(bounds)}; small vibration about rest."
+    bounds += [
+        f"{per_cent(within)} in {name} at mode {number} up to {_time(each)}" for name, each in named if each < inf
+    ]
+    words = f"{' '.join(setting[:2])}, {with_unit(setting.step, 's')}: {', '.join(bounds)}; small vibration about rest."
     about = {"engine": setting.engine, "integrator": setting.integrator, "step": setting.step, "limit": limit}
     about |= {"stable": worst.run.stable, "substeps": worst.run.substeps, "omega_max": top, "axis": worst.line.axis}
     about |= {"accurate_steps": steps, "modes": {one.line.axis: one.figures()[0]._asdict() for one in motions}}
@@ -149,9 +156,7 @@ def accurate_steps(motions: Sequence[Motion], within: float) -> tuple[float, flo
     return found[0], found[1]
 
 
-def _errors(
-    motions: Sequence[Motion], setting: Setting, within: float, remedy: str
-) -> tuple[list[Margin], list[str]]:
+def _errors(motions: Sequence[Motion], setting: Setting, within: float, remedy: str) -> tuple[list[Margin], list[str]]:
     """(margin of the mode that differs most from the file, what its integrator adds to the damping)."""
     rows = [
         (hypot(c, z) if isfinite(c) else inf, c, z, mode, one, modes)
@@ -166,7 +171,7 @@ def _errors(
     if isfinite(size):
         text = f"mode {mode + 1}{where} runs at {modes.hz[mode]:.3g} Hz with {per_cent(modes.zeta[mode])} damping"
         text += f", {points} {'of it' if share > 0.0 else 'less by'} {whose}" if abs(share) >= 0.0005 else ""
-        text += f", {100.0 * change:+.2g} % in frequency"
+        text += f", in place of {modes.file_hz[mode]:.3g} Hz and {per_cent(modes.file_zeta[mode])}"
     sizes: dict[str, Any] = {"size": size, "fine": within, "limit": within, "remedy": remedy}
     name, where = f"time step of {with_unit(setting.step, 's')}", f"at mode {mode + 1} in {one.line.axis}"
     more = [row for row in rows if row[2] > NOTICED * row[-1].file_zeta[row[3]] + 1e-6]
@@ -185,7 +190,7 @@ def _table(motions: Sequence[Motion]) -> "Table":
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".6g") for name in ("meant", "file", "simulated"))]
     columns += [Column("change", format="+.3g", percent=True)]
     columns += [Column(name, format=".3g", percent=True) for name in ("damping", "simulated damping")]
-    columns += [Column("of it the integrator's", format="+.3g", percent=True)]
+    columns += [Column("added", format="+.3g", percent=True)]
     rows = list[tuple[Any, ...]]()
     for one in motions:
         modes, change, share = one.figures()
@@ -193,7 +198,7 @@ def _table(motions: Sequence[Motion]) -> "Table":
         figures = damped, modes.file_hz, modes.hz, change, modes.file_zeta, modes.zeta, share
         lists = [[x if isfinite(x) else None for x in each.tolist()] for each in figures]
         rows += zip([one.line.axis] * len(damped), range(1, 1 + len(damped)), *lists, strict=True)
-    note = "damped frequencies; meant: of the exact beam with the damping of the file"
+    note = "Damped frequencies, meant those of the exact beam with the damping of the file; added by the integrator."
     return Table("As it runs", columns, rows, [note])
 
 
@@ -221,16 +226,27 @@ def under_gravity(motions: Sequence[Motion], solids: Sequence[Solid], gravity: A
     size, text = max(found)
     if size <= within:
         return []
-    words: dict[str, Any] = {"failure": f"not judged under gravity: {text}", "remedy": "set gravity to zero to judge it without"}
+    words: dict[str, Any] = {
+        "failure": f"not judged under gravity: {text}",
+        "remedy": "set gravity to zero to judge it without",
+    }
     return [Margin(name="gravity", size=size, fine=within, limit=within, leads=True, **words)]
+
+
+def in_space_only(margin: Margin) -> Margin:
+    """A margin of a file whose steps are unknown."""
+    words = {key: f"{text}, in space only" for key in ("where", "failure") if (text := getattr(margin, key))}
+    return msgspec.structs.replace(margin, **words)
 
 
 def _time(step: float) -> str:
     """A step that is at most this one, in three digits."""
-    return with_unit(_floor(step, 3), "s") if step else "0 s"
+    return with_unit(_floor(step, 3), "s")
 
 
 def _floor(value: float, digits: int) -> float:
-    """The number of so many digits below."""
+    """The number of so many digits below; 0 of what is not finite and positive."""
+    if not 0.0 < value < inf:
+        return 0.0
     unit = 10.0 ** (floor(log10(value) + 1e-9) + 1 - digits)
-    return floor(value / unit + 1e-9) * unit
+    return float(f"{floor(value / unit + 1e-9) * unit:.{digits}g}")

@@ -10,6 +10,7 @@ from verify.engines.line import Line
 from verify.engines.rules import Judged
 from verify.engines.stiffness_law import ALIKE
 from verify.exact.torsion import shafts, torsion_hz
+from verify.errors import InputError
 from verify.problem.beam import Beam
 
 UNEVEN = 0.01
@@ -36,7 +37,7 @@ def judge_twist(line: Line, meant: Beam, beam: Beam | None) -> Judged | None:
     """The rule of the joints in torsion, by GJ and polar inertia of `beam` or, without, of the file; `meant`: its beam.
 
     None where the joint at the wall is free, where polar inertias are those of no section, and where no uniform shaft
-    explains a file. Raises InputError for a beam without sections.
+    explains a file, and for a beam without sections.
     """
     (lengths, _, _, inertias), k = line.links.T, line.springs
     held, half, edges = bool(np.isnan(k[0])), 0.5 * lengths, np.append(0.0, np.cumsum(lengths))
@@ -51,7 +52,10 @@ def judge_twist(line: Line, meant: Beam, beam: Beam | None) -> Judged | None:
     uneven = np.ptp(whole[1:]) > ALIKE * twist or np.ptp(inertias / lengths) > UNEVEN * spin
     if not (line.solid and (held or k[0] > 0.0) and (k[1:] > 0.0).all()) or line.ball or (uneven and not beam):
         return None
-    pieces = np.array([[edges[-1], twist, spin]]) if beam is None else shafts(beam)
+    try:
+        pieces = np.array([[edges[-1], twist, spin]]) if beam is None else shafts(beam)
+    except InputError:
+        return None
     at = np.searchsorted(np.cumsum(pieces[:, 0])[:-1], edges[:-1] + half)
     springs = 1.0 / series(half / pieces[at, 1])
 
