@@ -44,7 +44,7 @@ TEXT = {"", ".csv", ".txt", ".tsv", ".dat", ".f06", ".asc"}
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @click.option("--engine", metavar="NAME[:INTEGRATOR]", default="", help="That a chain runs in. Default: its file's.")
-@click.option("--step", metavar="TIME", help="Its time step, such as 1ms. Default: that of its file.")
+@click.option("--step", "time_step", metavar="TIME", help="Its time step, such as 1ms. Default: that of its file.")
 @shared.output_options
 def compare(
     scene: str,
@@ -60,7 +60,7 @@ def compare(
     theory: str | None,
     corrected: str | None,
     engine: str,
-    step: str | None,
+    time_step: str | None,
     **formats: Any,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
@@ -75,9 +75,9 @@ def compare(
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
-        run = {"engine": engine, "step": None if step is None else typed(step, Seconds, "step")}
+        run = {"engine": engine, "step": None if time_step is None else typed(time_step, Seconds, "step")}
         return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
-    if engine or step:
+    if engine or time_step:
         raise click.UsageError("--engine and --step are of a chain in an .xml, .sdf or .urdf.")
     if bool(words) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")

@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.blas import one_blas_thread
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme
 from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError

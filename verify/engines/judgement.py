@@ -10,11 +10,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from verify.analysis.verdict import FINE, Margin, per_cent
-from verify.arrays import Array
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
-from verify.engines.running import judge_runs, motion, setting_of, under_gravity
+from verify.engines.running import in_space_only, judge_runs, motion, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
 from verify.engines.twist import judge_twist
@@ -222,11 +221,11 @@ def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], ou
         if not alike:
             raise InputError(f"{path.name}: its joints are not in its text in order, write it by mj_saveLastXML first")
     if step:
-        place = rb"<max_step_size>([^<]*)" if kind == "sdf" else rb"<option\b[^>]*?\stimestep\s*=\s*[\"']([^\"']*)"
-        steps = [(*spot.span(1), repr(step)) for spot in re.finditer(place, text)]
-        if not steps and (head := re.search(rb"<mujoco\b[^>]*>", text)):
-            steps = [(head.end(), head.end(), f'\n<option timestep="{step!r}"/>')]
-        edits += steps
+        attribute = rb"<option\b[^>]*?\stimestep\s*=\s*[\"']([^\"']*)"
+        spots = list(re.finditer(rb"<max_step_size>([^<]*)" if kind == "sdf" else attribute, text))
+        edits += [(*spot.span(1), repr(step)) for spot in spots]
+        if not spots and (begun := re.search(rb"<mujoco\b[^>]*>", text)):
+            edits.append((begun.end(), begun.end(), f'\n<option timestep="{step!r}"/>'))
     for start, end, word in sorted(edits, reverse=True):
         data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import numpy as np
 
-from verify.analysis.verdict import Margin, per_cent, void
+from verify.analysis.verdict import Margin, per_cent, three_digits, void
 from verify.arrays import Array
 from verify.engines.integrators import TRAPEZOIDAL, integrator_of, scheme_of
 from verify.engines.line import Line
@@ -64,7 +64,7 @@ class Motion(NamedTuple):
 
 
 class Ran(NamedTuple):
-    """What `judge_runs` finds: `step`, s, within all errors, 0 where none is needed or known; `words` of the summary."""
+    """What `judge_runs` finds: `words` of the summary; `step`, s, within all errors, 0 where none is needed or known."""
 
     margins: list[Margin]
     words: str
@@ -81,8 +81,7 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
         setting = setting._replace(engine=name, integrator=integrator)
     if setting.engine:
         row = integrator_of(*setting[:2])
-        note = f"{row.engine} {row.setting}: {row.remark}" if row.remark else setting.note
-        setting = setting._replace(engine=row.engine, integrator=row.setting, note=note)
+        setting = setting._replace(engine=row.engine, integrator=row.setting)
     if step is not None:
         check_number("step", step, "s", above=0)
     return setting if step is None else setting._replace(step=step)
@@ -114,6 +113,9 @@ def judge_runs(motions: Sequence[Motion], setting: Setting, within: float) -> Ra
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
     limit, where = worst.run.limit, f" in {worst.line.axis}" if len(motions) > 1 else ""
     steps, warnings = accurate_steps(motions, within), [setting.note] if setting.note else []
+    remark = integrator_of(*setting[:2]).remark
+    if remark and (not worst.run.stable or setting.engine != "MuJoCo"):
+        warnings.append(f"{' '.join(setting[:2])}: {remark}")
     good = _floor(min(0.5 * limit, *steps), 2)
     top, number = worst.run.omega_max, max(len(one.exact) for one in motions)
     remedy = f"time step at most {_time(min(steps))} for {per_cent(within)} at mode {number}"
@@ -164,14 +166,14 @@ def _errors(motions: Sequence[Motion], setting: Setting, within: float, remedy: 
         for modes, change, share in [one.figures()]
         for mode, (c, z) in enumerate(zip(change.tolist(), share.tolist(), strict=True))
     ]
-    size, change, share, mode, one, modes = max(rows, key=lambda row: row[0])
+    size, _, share, mode, one, modes = max(rows, key=lambda row: row[0])
     where = f" in {one.line.axis}" if len(motions) > 1 else ""
     whose = "the integrator's" + " and armature's" * bool(one.line.armatures.any())
     text, points = f"mode {mode + 1}{where} flips its sign at every step", f"{100.0 * abs(share):.2g} points"
     if isfinite(size):
-        text = f"mode {mode + 1}{where} runs at {modes.hz[mode]:.3g} Hz with {per_cent(modes.zeta[mode])} damping"
+        text = f"mode {mode + 1}{where} runs at {three_digits(modes.hz[mode])} Hz with {per_cent(modes.zeta[mode])} damping"
         text += f", {points} {'of it' if share > 0.0 else 'less by'} {whose}" if abs(share) >= 0.0005 else ""
-        text += f", in place of {modes.file_hz[mode]:.3g} Hz and {per_cent(modes.file_zeta[mode])}"
+        text += f", in place of {three_digits(modes.file_hz[mode])} Hz and {per_cent(modes.file_zeta[mode])}"
     sizes: dict[str, Any] = {"size": size, "fine": within, "limit": within, "remedy": remedy}
     name, where = f"time step of {with_unit(setting.step, 's')}", f"at mode {mode + 1} in {one.line.axis}"
     more = [row for row in rows if row[2] > NOTICED * row[-1].file_zeta[row[3]] + 1e-6]

@@ -9,8 +9,8 @@ from verify.engines.description import Axis, Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
 from verify.engines.rules import Judged
 from verify.engines.stiffness_law import ALIKE
-from verify.exact.torsion import shafts, torsion_hz
 from verify.errors import InputError
+from verify.exact.torsion import shafts, torsion_hz
 from verify.problem.beam import Beam
 
 UNEVEN = 0.01
