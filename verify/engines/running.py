@@ -64,7 +64,7 @@ class Motion(NamedTuple):
 
 
 class Ran(NamedTuple):
-    """What `judge_runs` finds: `words` of the summary; `step`, s, within all errors, 0 where none is needed or known."""
+    """What `judge_runs` finds: `words` of the summary; `step` within all errors, s, 0: none is needed or known."""
 
     margins: list[Margin]
     words: str
@@ -119,7 +119,7 @@ def judge_runs(motions: Sequence[Motion], setting: Setting, within: float) -> Ra
     good = _floor(min(0.5 * limit, *steps), 2)
     top, number = worst.run.omega_max, max(len(one.exact) for one in motions)
     remedy = f"time step at most {_time(min(steps))} for {per_cent(within)} at mode {number}"
-    remedy = "choose another integrator" if not min(limit, *steps) else remedy * (min(steps) < limit)
+    remedy = "choose another integrator" if not min(limit, *steps) else remedy * bool(min(steps) < limit)
     if not worst.run.stable:
         damped = " with its dashpots" if any(one.file.damping.any() for one in motions) else ""
         text = f"diverges{where} (omega_max h = {top * setting.step:.3g}, limit {top * limit:.3g}{damped})"
@@ -171,9 +171,10 @@ def _errors(motions: Sequence[Motion], setting: Setting, within: float, remedy: 
     whose = "the integrator's" + " and armature's" * bool(one.line.armatures.any())
     text, points = f"mode {mode + 1}{where} flips its sign at every step", f"{100.0 * abs(share):.2g} points"
     if isfinite(size):
-        text = f"mode {mode + 1}{where} runs at {three_digits(modes.hz[mode])} Hz with {per_cent(modes.zeta[mode])} damping"
-        text += f", {points} {'of it' if share > 0.0 else 'less by'} {whose}" if abs(share) >= 0.0005 else ""
-        text += f", in place of {three_digits(modes.file_hz[mode])} Hz and {per_cent(modes.file_zeta[mode])}"
+        pairs = (modes.hz[mode], modes.zeta[mode]), (modes.file_hz[mode], modes.file_zeta[mode])
+        now, file = (f"{three_digits(hz)} Hz with {per_cent(zeta)}" for hz, zeta in pairs)
+        share_text = f", {points} {'of it' if share > 0.0 else 'less by'} {whose}" if abs(share) >= 0.0005 else ""
+        text = f"mode {mode + 1}{where} runs at {now} damping{share_text}, in place of {file}"
     sizes: dict[str, Any] = {"size": size, "fine": within, "limit": within, "remedy": remedy}
     name, where = f"time step of {with_unit(setting.step, 's')}", f"at mode {mode + 1} in {one.line.axis}"
     more = [row for row in rows if row[2] > NOTICED * row[-1].file_zeta[row[3]] + 1e-6]
