@@ -78,7 +78,7 @@ def judge_file(
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
     lone = [motion(line, np.full(len(data[0]["error"]), np.nan), setting) for line, shaft in twisted if not shaft]
     chains = [motion(one.line, about["exact_hz"], setting) for one, about in zip(judged, data, strict=True)] + lone
-    ran, weighed = judge_runs(chains, setting, within), under_gravity(chains, solids, gravity, within)
+    ran, weighed = judge_runs(chains, setting, within), under_gravity(judged, solids, gravity, within)
     margins = [*ran.margins, *weighed, *(margins if ran.data else map(in_space_only, margins))]
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
