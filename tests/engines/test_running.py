@@ -1,0 +1,257 @@
+"""Files as they run: against one step in closed form, MuJoCo's matrices and MuJoCo's own motion."""
+
+import re
+from math import atan, hypot, inf, log, pi, sqrt
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from tests.engines.test_chain_files import STEEL
+from tests.engines.test_foreign_files import STRIP
+from verify.cli import status_of
+from verify.engines.describe import describe
+from verify.engines.judgement import judge_file
+from verify.engines.writers import mjcf, write
+from verify.errors import InputError
+
+mujoco = pytest.importorskip("mujoco")
+
+
+def written(path, count=20, *, beam=STEEL, step=2e-3, integrator="Euler", extra="", **more):
+    """An MJCF file in steps of an integrator; `extra` attributes of every joint."""
+    text = mjcf(describe(beam, count, **more)).replace("<joint ", f"<joint {extra} ")
+    path.write_text(re.sub('timestep="[^"]*" integrator="[^"]*"', f'timestep="{step}" integrator="{integrator}"', text))
+    return path
+
+
+def matrices(model, among=""):
+    """M, C, K of MuJoCo, of hinges whose names have a word."""
+    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    data.qpos[:] = model.qpos_spring
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, mass)
+    some = np.ix_(*[[j for j in range(model.njnt) if among in model.joint(j).name]] * 2)
+    diagonals = (np.diag(np.reshape(one, (model.nv, -1))[:, 0]) for one in (model.dof_damping, model.jnt_stiffness))
+    return mass[some], *(one[some] for one in diagonals)
+
+
+def omegas(model, among=""):
+    mass, _, stiffness = matrices(model, among)
+    return np.sqrt(eigh(stiffness, mass, eigvals_only=True))
+
+
+def load(path, step=None):
+    model = mujoco.MjModel.from_xml_path(str(path))
+    model.opt.timestep = step or model.opt.timestep
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    return model
+
+
+def grows(path, step=None):
+    """Whether noise of 1e-9 grows in 2500 steps of MuJoCo."""
+    model = load(path, step)
+    data = mujoco.MjData(model)
+    data.qpos[:] = 1e-9 * np.random.default_rng(5).standard_normal(model.nq)
+    mujoco.mj_step(model, data, nstep=2500)
+    return not abs(data.qpos).max() < 1e-6
+
+
+def recorded(path, mode):
+    """(f, zeta) of MuJoCo's free vibration in an undamped mode, by a recurrence of three samples."""
+    model = load(path)
+    mass, _, stiffness = matrices(model)
+    omega2, shapes = eigh(stiffness, mass)
+    shape, data = shapes[:, mode - 1], mujoco.MjData(model)
+    apart, record = max(1, round(0.3 / (sqrt(omega2[mode - 1]) * model.opt.timestep))), []
+    data.qpos[:] = 1e-6 * shape / abs(shape).max()
+    for _ in range(30):
+        record.append(mass @ shape @ data.qpos)
+        mujoco.mj_step(model, data, nstep=apart)
+    first, second = np.linalg.lstsq(np.stack([record[1:-1], record[:-2]], axis=1), record[2:], rcond=None)[0]
+    s = np.log(np.roots([1.0, -first, -second])[0].astype(complex)) / (apart * model.opt.timestep)
+    return abs(s.imag) / (2 * pi), -s.real / abs(s)
+
+
+def simulated(result, axis="bending"):
+    return [row for row in result.tables[1].records() if row["axis"] == axis]
+
+
+def test_a_cable_at_two_milliseconds_diverges(tmp_path, capsys):
+    path, out = written(tmp_path / "b.xml"), tmp_path / "out.xml"
+    assert status_of(["compare", str(path), "--mode", "3", "--corrected", str(out)]) == 1
+    first = capsys.readouterr().out.replace("\n", " ")
+    top = omegas(load(path))[-1]
+    assert (2e-3 * top, 2e6 / top) == pytest.approx((65.5, 61.07), rel=1e-3)
+    assert "diverges (omega_max h = 65.5, limit 2): time step at most 61 µs, or 33 substeps" in first
+    run = judge_file(path, None, 3).data["run"]
+    assert (run["limit"], run["substeps"], run["stable"]) == (pytest.approx(2 / top, rel=1e-6), 33, False)
+    assert grows(path, 1.01 * run["limit"])
+    assert not grows(path, 0.99 * run["limit"])
+    assert judge_file(out, None, 3).data["passed"]
+    assert not grows(out)
+    assert out.read_text().count("timestep") == 1
+
+
+@pytest.mark.parametrize(("integrator", "step"), [("discrete", 2e-3), ("implicitfast", 5e-5)])
+def test_frequency_and_damping_are_those_of_the_engine(tmp_path, integrator, step):
+    path = written(tmp_path / "c.xml", step=step, integrator=integrator, damping=0.01)
+    result = judge_file(path, None, 3)
+    for mode, row in enumerate(simulated(result), 1):
+        found = recorded(path, mode)
+        assert (row["simulated"], row["simulated damping"]) == (
+            pytest.approx(found[0], rel=1e-5),
+            pytest.approx(found[1], abs=1e-5),
+        )
+        assert row["added"] == pytest.approx(row["simulated damping"] - row["damping"], abs=1e-12)
+    assert result.data["passed"] == (integrator != "discrete")
+    if integrator == "discrete":
+        assert (row["simulated"], row["simulated damping"]) == pytest.approx((68.14, 0.606), rel=1e-3)
+        assert (row["meant"], row["damping"]) == pytest.approx((117.29 * sqrt(1 - 0.1755**2), 0.1755), rel=1e-3)
+        assert "mode 3 runs at 68.1 Hz with 61 % damping, 43 points of it the integrator's" in result.verdict.headline
+        assert result.data["run"]["limit"] == inf
+
+
+def test_limit_holds_with_dashpots_of_one_value(tmp_path):
+    """Without them it is 166 microseconds."""
+    path = written(tmp_path / "in.xml", 14, beam=STRIP, step=5e-4)
+    path.write_text(re.sub('damping="[^"]*"', 'damping="0.02"', path.read_text()))
+    result = judge_file(path, None, 3, corrected=tmp_path / "out.xml")
+    limit = result.data["run"]["limit"]
+    assert (2 / omegas(load(path))[-1], limit) == pytest.approx((1.66e-4, 2.735e-4), rel=2e-3)
+    assert (grows(path), grows(path, 1.01 * limit), grows(path, 0.99 * limit)) == (True, True, False)
+    assert judge_file(tmp_path / "out.xml", None, 3).data["passed"]
+    explicit = path.read_text().replace("<option ", '<option><flag eulerdamp="disable"/></option><option ')
+    path.write_text(explicit)
+    limit = judge_file(path, None, 3).data["run"]["limit"]
+    assert limit < 1.4e-4
+    assert (grows(path, 1.01 * limit), grows(path, 0.99 * limit)) == (True, False)
+
+
+def implicit_euler(omega, step):
+    """(f, zeta) of an undamped mode."""
+    size, angle = log(1 + (omega * step) ** 2) / 2, atan(omega * step)
+    return angle / (2 * pi * step), size / hypot(size, angle)
+
+
+@pytest.mark.parametrize("suffix", ["sdf", "urdf"])
+def test_files_without_a_step_are_judged_in_space_only(tmp_path, suffix):
+    path, chain = tmp_path / f"beam.{suffix}", describe(STEEL, 20)
+    write(chain, path)
+    result = judge_file(path, None, 3)
+    assert (result.data["run"], result.data["passed"]) == ({}, True)
+    assert "in space only" in result.verdict.headline
+    for engine, step in (("DART", 1e-3), ("drake:SAP, PD gains", 1e-4)):
+        rows = simulated(judge_file(path, None, 3, engine=engine, step=step))
+        found = [(row["simulated"], row["simulated damping"]) for row in rows]
+        expected = [implicit_euler(2 * pi * hz, step) for hz in chain.frequencies_hz(n_modes=3)]
+        assert np.array(found) == pytest.approx(np.array(expected), rel=1e-9)
+    run = judge_file(path, None, 3, engine="drake", step=1e-4).data["run"]
+    assert run["limit"] == pytest.approx(1 / (pi * chain.frequencies_hz()[-1]), rel=1e-6)
+    steps = np.array(run["accurate_steps"]) * 2 * pi * chain.frequencies_hz()[2]
+    assert steps[0] == pytest.approx(0.483, rel=2e-3)
+    gazebo = judge_file(path, None, 3, engine="gazebo", step=1e-4).data["run"]
+    x = np.array(gazebo["accurate_steps"]) * 2 * pi * chain.frequencies_hz()[2]
+    assert x == pytest.approx([0.175, 0.02], rel=0.01)
+    assert implicit_euler(1.0, x[1])[1] == pytest.approx(0.01, rel=1e-4)
+    with pytest.raises(InputError, match="its frequencies depend"):
+        judge_file(path, None, 3, engine="newton:XPBD", step=1e-4)
+    assert status_of(["compare", str(path), "--engine", "gazebo", "--step", "1ms"]) == 1
+    assert status_of(["compare", str(path), "--engine", "gazebo", "--step", "10us"]) == 0
+    assert status_of(["compare", "steel-cantilever", "27.6", "--step", "1ms"]) == 2
+
+
+def test_step_of_an_sdf_world(tmp_path):
+    path, out = tmp_path / "beam.sdf", tmp_path / "out.sdf"
+    write(describe(STEEL, 20), path)
+    physics = '<world name="w"><physics type="{}"><max_step_size>0.001</max_step_size></physics><model'
+    for kind, known in (("dart", True), ("ode", False)):
+        text = path.read_text().replace("<model", physics.format(kind)).replace("</model>", "</model></world>")
+        (tmp_path / "world.sdf").write_text(text)
+        result = judge_file(tmp_path / "world.sdf", None, 3, corrected=out)
+        assert bool(result.data["run"]) == known
+        assert result.data["passed"] != known
+        assert judge_file(out, None, 3).data["passed"]
+        assert float(re.search("<max_step_size>([^<]*)", out.read_text())[1]) < (3e-5 if known else 1)
+
+
+def test_the_axis_that_sets_the_step_and_the_joint_at_the_wall_in_torsion(tmp_path):
+    path, out = written(tmp_path / "s.xml", step=4e-5, in_space=True), tmp_path / "out.xml"
+    limits = {axis: 2 / omegas(load(path), axis)[-1] for axis in ("bending", "width", "torsion")}
+    run = judge_file(path, None, 3).data["run"]
+    assert (run["axis"], run["limit"]) == ("width", pytest.approx(limits["width"], rel=1e-6))
+    assert min(limits, key=limits.get) == "width"
+    path.write_text(
+        re.sub(
+            r'(joint0_torsion.*?stiffness=")([\d.]+)', lambda m: f"{m[1]}{float(m[2]) / 2!r}", path.read_text(), count=1
+        )
+    )
+    for beam in (None, STEEL):
+        result = judge_file(path, beam, 2, corrected=out)
+        shaft = next(one for one in result.data["chains"] if one["axis"] == "torsion")
+        thin, wide = 0.008, 0.04  # Roark's formula for a rectangle
+        twist = wide * thin**3 * (1 / 3 - 0.21 * thin / wide * (1 - (thin / wide) ** 4 / 12)) * 210e9 / 2.6
+        exact = np.array([1, 3]) / 4 * sqrt(twist / (7850 * thin * wide * (thin**2 + wide**2) / 12))
+        assert shaft["exact_hz"] == pytest.approx(exact, rel=2e-3)
+        assert shaft["frequencies_hz"] == pytest.approx(omegas(load(path), "torsion")[:2] / (2 * pi), rel=1e-9)
+        assert (len(shaft["faults"]), shaft["error"][0]) == (1, pytest.approx(-1 / 41, rel=0.05))
+        right = omegas(load(out), "torsion")[:2] / (2 * pi)
+        assert right / shaft["exact_hz"] - 1 == pytest.approx(-((np.array([1, 3]) * pi / 40) ** 2) / 24, rel=0.01)
+
+
+def sagged(path):
+    """Relative change of the first frequency in MuJoCo about equilibrium under gravity."""
+    model = load(path)
+    data, q = mujoco.MjData(model), np.zeros(model.nv)
+
+    def force(q):
+        data.qpos[:], data.qvel[:], data.qacc[:] = q, 0.0, 0.0
+        mujoco.mj_inverse(model, data)
+        return data.qfrc_inverse.copy()
+
+    def tangent(q):
+        return np.array([(force(q + e) - force(q - e)) / 2e-6 for e in 1e-6 * np.eye(model.nv)]).T
+
+    straight = omegas(model)[0]
+    for _ in range(8):
+        q = q - np.linalg.solve(tangent(q), force(q))
+    data.qpos[:] = q
+    mujoco.mj_forward(model, data)
+    mass, both = np.zeros((model.nv, model.nv)), tangent(q)
+    mujoco.mj_fullM(model, data, mass)
+    return sqrt(eigh((both + both.T) / 2, mass, eigvals_only=True)[0]) / straight - 1
+
+
+@pytest.mark.parametrize(("weight", "direction", "change"), [
+    (0.9, (0, 0, -1), 0.0075), (1.2, (0, 0, -1), 0.0133), (0.13, (1, 0, 0), 0.0083), (0.2, (-1, 0, 0), -0.0128),
+    (296.0, (0, 1, 0), 0.0), (296.0, (0, 0, -1), None),
+])  # fmt: skip
+def test_a_weight_that_changes_the_first_frequency_is_named(tmp_path, weight, direction, change):
+    path = written(tmp_path / "rope.xml", step=1e-5)
+    pull = weight * 358.4 / 2.512
+    path.write_text(
+        path.read_text().replace('gravity="0 0 0"', f'gravity="{" ".join(str(pull * x) for x in direction)}"')
+    )
+    if change:
+        assert sagged(path) == pytest.approx(change, rel=0.05)
+    result = judge_file(path, None, 3)
+    assert result.data["passed"] == (change is not None and abs(change) < 0.01)
+    if not result.data["passed"]:
+        assert "not judged under gravity" in result.verdict.headline
+        assert f"{weight:.3g} EI/L^2" in result.verdict.headline
+
+
+def test_armature_counts_to_the_integrator(tmp_path):
+    """h^2 k/4 on every hinge makes the trapezoidal rule of MuJoCo's Euler."""
+    step, path = 1e-3, written(tmp_path / "in.xml", step=1e-3)
+    path.write_text(
+        re.sub('stiffness="([^"]*)"', lambda k: f'{k[0]} armature="{step**2 * float(k[1]) / 4!r}"', path.read_text())
+    )
+    result, chain = judge_file(path, None, 3, within=0.05), describe(STEEL, 20)
+    omega = 2 * pi * chain.frequencies_hz(n_modes=3)
+    assert [row["file"] for row in simulated(result)] == pytest.approx(omega / (2 * pi), rel=1e-9)
+    assert [row["simulated"] for row in simulated(result)] == pytest.approx(
+        np.arctan(omega * step / 2) / (pi * step), rel=1e-9
+    )
+    assert (result.data["passed"], grows(path)) == (True, False)
+    assert 1e-3 < result.data["run"]["limit"] < 1.01e-3  # right at one step
