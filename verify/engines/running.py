@@ -189,15 +189,19 @@ def under_gravity(judged: Sequence[Judged], solids: Sequence[Solid], gravity: Ar
     along = (places[-1] - places[0]) / np.linalg.norm(places[-1] - places[0])
     for line, stiffness in ((one.line, one.stiffness) for one in judged if one.line.axis != "torsion"):
         lengths, masses, centres, _ = line.links.T
-        moment = 2.0 * float(masses @ (np.cumsum(lengths) - lengths + centres)) * float(lengths.sum()) / stiffness
-        across = np.cross(np.array(line.about.split(), dtype=float), along)
-        down, pull = (moment * float(gravity @ one) for one in (across, along))  # weights in EI/L^2
-        sag = abs(down) / 8.0 if line.springs[0] or not down else inf
+        moment, length = float(masses @ (np.cumsum(lengths) - lengths + centres)), float(lengths.sum())
+        uneven = 2.0 * moment / length / float(masses.sum())
+        down, pull = (  # weights in EI/L^2
+            float(gravity @ one) * float(masses.sum()) * length**2 / stiffness
+            for one in (np.cross(np.array(line.about.split(), dtype=float), along), along)
+        )
+        sag = uneven * abs(down) / 8.0 if line.springs[0] or not down else inf
         text = f"its weight, {abs(down):.3g} EI/L^2, bends it by {sag:.2g} of its length (linear theory)"
         found.append((SAG * sag**2, text))
-        change = max(pull / BUCKLING, -1.0)
-        text = f"changes its first frequency by about {50.0 * change:+.2g} %" if change > -1.0 else "buckles it"
-        found.append((0.5 * abs(change), f"its weight along it, {abs(pull):.3g} EI/L^2, {text}"))
+        change = 0.5 * max(uneven * pull / BUCKLING, -1.0)
+        text = f"{'raises' if pull > 0.0 else 'lowers'} its first frequency by about {per_cent(change)}"
+        text = text if change > -0.5 else "buckles it"
+        found.append((abs(change), f"its weight along it, {abs(pull):.3g} EI/L^2, {text}"))
     size, text = max(found)
     words: dict[str, Any] = {"name": "gravity", "failure": f"not judged under gravity: {text}"}
     words["remedy"] = "set gravity to zero for the frequencies without it"
