@@ -13,7 +13,7 @@ from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
-from verify.engines.running import in_space_only, judge_runs, motion, setting_of, under_gravity
+from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
 from verify.engines.twist import judge_twist
@@ -26,7 +26,6 @@ from verify.problem.supports import FIXED
 if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
-MEANS = {"torsion": "GJ"}
 NOTICED = 0.1
 """Part of the acceptance up to which an error of a mode may grow by a correction."""
 
@@ -70,40 +69,44 @@ def judge_file(
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
-    twisted = [(line, judge_twist(line, judged[0].present.beam, beam)) for line in every[len(found) :]]
-    judged += [shaft for _, shaft in twisted if shaft]
+    twisted = every[len(found) :]
+    judged += filter(None, (judge_twist(line, beam) for line in twisted))
+    lone = twisted if judged[-1].line.axis != "torsion" else []
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
-    lone = [motion(line, np.full(len(data[0]["error"]), np.nan), setting) for line, shaft in twisted if not shaft]
-    chains = [motion(one.line, about["exact_hz"], setting) for one, about in zip(judged, data, strict=True)] + lone
-    ran, weighed = judge_runs(chains, setting, within), under_gravity(judged, solids, gravity, within)
-    margins = [*ran.margins, *weighed, *(margins if ran.data else map(in_space_only, margins))]
+    exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
+    ran = judge_runs([*(one.line for one in judged), *lone], exact, setting, within)
+    others = [*ran.margins, *under_gravity(judged, solids, gravity, within)]
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
-        margins.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
-    warnings += [*ran.warnings, *_hints(solids, judged, beam, bool(lone)), *filter(None, worse)]
+        others.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
+    warnings += [*ran.warnings, *_hints(solids, judged, beam), *filter(None, worse)]
+    if lone and not lone[0].ball:
+        warnings.append(
+            "torsion is not judged: joints and inertias are of no uniform shaft, give a scene with sections"
+        )
     if corrected and (clashes or any(worse)):
         why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
-        lines_after = [one.line._replace(springs=one.springs) for one in judged]
-        right = [motion(line, one.exact, setting) for line, one in zip(lines_after, chains, strict=False)] + lone
-        last = judge_runs(right, setting, within).step
+        right = [one.line._replace(springs=one.springs) for one in judged]
+        last = judge_runs([*right, *lone], exact, setting, within).step
         warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
+    names = ["GJ" if one.line.axis == "torsion" else "EI" for one in judged]
     rules = [
-        f"{one.line.axis}: {one.rule}, {MEANS.get(one.line.axis, 'EI')} = {one.stiffness:.6g} N m2" for one in judged
+        f"{one.line.axis}: {one.rule}, {of} = {one.stiffness:.6g} N m2" for one, of in zip(judged, names, strict=True)
     ]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{sizes}; {'; '.join(rules)}. {ran.words}".strip()
-    passed = max(float(abs(one["error"]).max()) for one in data) <= within and not (clashes or weighed)
-    passed &= all(one.level == "trusted" for one in ran.margins)
-    known = {"passed": passed, "chains": list(data), "run": ran.data}
+    passed = max(float(abs(one["error"]).max()) for one in data) <= within
+    known = {"passed": passed and all(one.size <= within for one in others), "chains": list(data), "run": ran.data}
+    margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
     return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
 
@@ -117,9 +120,9 @@ def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[
     """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
     from verify.report.result import Column, Table
 
-    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(n_modes=modes)
-    m, exact = len(hertz), one.present.exact_hz(n_modes=len(hertz))
-    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(n_modes=m) / exact - 1.0
+    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.about, modes)
+    m, exact = len(hertz), one.present.exact_hz(one.about, len(hertz))
+    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.about, m) / exact - 1.0
     rows = list(zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True))
     springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
     change = Column("change", format="+.3g", percent=True)
@@ -167,15 +170,11 @@ def _cause(one: Judged) -> str:
     return "give more links"
 
 
-def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: bool) -> list[str]:
-    """What the frequencies leave out: ball joints, torsion; the modulus that EI means for round links."""
+def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None) -> list[str]:
+    """What the frequencies leave out: ball joints; the modulus that EI means for round links."""
     hints = list[str]()
     if any(one.line.ball for one in judged):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
-    elif untwisted:
-        hints.append(
-            "torsion is not judged: its springs and inertias are of no uniform shaft, give a scene with sections"
-        )
     radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9

@@ -1,74 +1,57 @@
-"""Torsion of a chain in a file next to the exact shaft that it means."""
+"""Torsion of a chain in a file: the rule of its joints, the shaft that they mean, what is wrong, correct joints."""
 
-from dataclasses import dataclass, field
+from math import pi
 
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import Axis, Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
-from verify.engines.rules import Judged
+from verify.engines.rules import Judged, rigid
 from verify.engines.stiffness_law import ALIKE
 from verify.errors import InputError
-from verify.exact.torsion import shafts, torsion_hz
+from verify.exact.torsion import shafts
 from verify.problem.beam import Beam
 
 UNEVEN = 0.01
 """Relative difference of polar inertias per length from which they are not those of one shaft."""
 
 
-@dataclass(frozen=True, eq=False)
-class Shaft(RigidChain):
-    """A chain with hinges in torsion, and length, GJ, rho I_p of the `pieces` of the exact shaft, (pieces, 3)."""
+def judge_twist(line: Line, beam: Beam | None) -> Judged | None:
+    """The joints in torsion, by GJ and polar inertia of `beam` or, without, of the round shaft that the file means.
 
-    pieces: Array = field(default_factory=lambda: np.empty((0, 3)))
-
-    def frequencies_hz(self, axis: Axis = "torsion", n_modes: int | None = None) -> Array:
-        """Of torsion, whatever the axis."""
-        return super().frequencies_hz("torsion", n_modes)
-
-    def exact_hz(self, axis: Axis = "torsion", n_modes: int = 3) -> Array:
-        """Of torsion, whatever the axis."""
-        bodies = [(body.position, body.rotary_inertia) for body in self.beam.mass]
-        return torsion_hz(self.pieces, (True, False), n_modes, bodies)
-
-
-def judge_twist(line: Line, meant: Beam, beam: Beam | None) -> Judged | None:
-    """The rule of the joints in torsion, by GJ and polar inertia of `beam` or, without, of the file; `meant`: its beam.
-
-    None where the joint at the wall is free, where polar inertias are those of no section, and where no uniform shaft
-    explains a file, and for a beam without sections.
+    None where the joint at the wall is free, for ball joints, polar inertias of no section, a file that no uniform
+    shaft explains, and a beam without sections.
     """
-    (lengths, _, _, inertias), k = line.links.T, line.springs
-    held, half, edges = bool(np.isnan(k[0])), 0.5 * lengths, np.append(0.0, np.cumsum(lengths))
+    (lengths, masses, _, inertias), k = line.links.T, line.springs
+    held, half = bool(np.isnan(k[0])), 0.5 * lengths
 
     def series(soft: Array) -> Array:
         """Compliances of joints between half links; all of a fixed link is in the joint behind."""
         both = soft + np.append(0.0, soft[:-1])
-        return np.append([np.nan] * held, both[held:] + np.eye(len(both) - held)[0] * soft[0] * held)
+        if held:
+            both[:2] = np.nan, both[1] + soft[0]
+        return np.asarray(both)
 
-    whole = k * series(half)
-    twist, spin = float(np.nanmedian(whole[1:])), float(np.median(inertias / lengths))
-    uneven = np.ptp(whole[1:]) > ALIKE * twist or np.ptp(inertias / lengths) > UNEVEN * spin
-    if not (line.solid and (held or k[0] > 0.0) and (k[1:] > 0.0).all()) or line.ball or (uneven and not beam):
+    whole, length, spin = k * series(half), float(lengths.sum()), float(np.median(inertias / lengths))
+    uneven = np.ptp(whole[1:]) > ALIKE * whole[1:].min() or np.ptp(inertias / lengths) > UNEVEN * spin
+    if not line.solid or line.ball or k[0] == 0.0 or not (k[1:] > 0.0).all() or (uneven and not beam):
         return None
+    twist, density = float(np.median(whole[1:])), float(np.median(masses / lengths))
+    if beam is None:  # of this mass and polar inertia, with E = 2 G
+        diameter, density = (8.0 * spin / density) ** 0.5, density**2 / (2.0 * pi * spin)
+        sizes = {"shape": "round", "diameter": diameter, "supports": ("clamped", "free"), "poissons_ratio": 0.0}
+        beam = Beam(length=length, youngs_modulus=64.0 * twist / (pi * diameter**4), density=density, **sizes)
     try:
-        pieces = np.array([[edges[-1], twist, spin]]) if beam is None else shafts(beam)
+        pieces, stiffness, inertia = shafts(beam).T
     except InputError:
         return None
-    at = np.searchsorted(np.cumsum(pieces[:, 0])[:-1], edges[:-1] + half)
-    springs = 1.0 / series(half / pieces[at, 1])
-
-    def chain(values: Array) -> Shaft:
-        hinges = [() if np.isnan(one) else (Hinge("torsion", float(one)),) for one in [*values, 0.0]]
-        rows = zip(edges.tolist(), line.links.tolist(), strict=False)
-        links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
-        return Shaft(meant, "", tuple(map(Joint, edges.tolist(), hinges)), links, pieces=pieces)
-
-    expected = pieces[at, 2] * lengths
-    wall, inner, mass = k[0] / springs[0], float(np.median((k / springs)[1:])), float(np.median(inertias / expected))
+    at = np.searchsorted(np.cumsum(pieces)[:-1], np.cumsum(lengths) - half)
+    springs = 1.0 / series(half / stiffness[at])
+    wall, inner = k[0] / springs[0], float(np.median((k / springs)[1:]))
+    mass = float(np.median(inertias / lengths / inertia[at]))
     rule = "first link fixed" if held else f"{2.0 * wall / inner:.4g} GJ/l at the wall"
-    faults = [f"{rule} in place of 2 GJ/l"] if abs(wall / inner - 1.0) > ALIKE else []
-    faults += [f"torsional stiffness {inner:.5g} times that of the beam"] if abs(inner - 1.0) > ALIKE else []
-    links = [f"polar inertia {mass:.4g} times that of the beam"] if abs(mass - 1.0) > UNEVEN else []
-    return Judged(line, chain(k), chain(springs), rule, twist, springs, faults + links, links, [], [])
+    faults = [f"{rule} in place of 2 GJ/l"] * bool(held or abs(wall / inner - 1.0) > ALIKE)
+    faults += [f"torsional stiffness {inner:.5g} times that of the beam"] * bool(abs(inner - 1.0) > ALIKE)
+    links = [f"polar inertia {mass:.4g} times that of the beam"] * bool(abs(mass - 1.0) > UNEVEN)
+    present, correct = (rigid(line, each, beam, "") for each in (k, springs))
+    return Judged(line, present, correct, rule, twist, springs, faults + links, links, [], [])
