@@ -130,7 +130,7 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     """mosesnah-shared/whip-project-targeting, models/25DOF_whip.xml: a point mass at the far joint of each link."""
     joint = '<joint name="j{i}" axis="0 -1 0" stiffness="0.242" damping="0.092"/>'
     geom = '<geom type="sphere" pos="0 0 -0.072" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
-    found, warnings, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
+    found, _, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
     assert [text.split(" ")[0] for text in found["faults"]] == ["wall", "inertia", "centre"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)

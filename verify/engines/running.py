@@ -55,7 +55,7 @@ class Motion(NamedTuple):
         part, found = slice(self.first, self.first + len(self.exact)), list[tuple[Any, ...]]()
         file, run = self.file.modes, self.run.modes
         figures = (one[part].tolist() for one in (file.file_hz, file.file_zeta, run.hz, run.zeta))
-        for mode, (exact, hz, zeta, now, after) in enumerate(zip(self.exact.tolist(), *figures, strict=True), 1):
+        for mode, (exact, hz, zeta, now, after) in enumerate(zip(self.exact.tolist(), *figures, strict=False), 1):
             meant, change = exact * max(1.0 - zeta**2, 0.0) ** 0.5, now / hz - 1.0 if hz else 0.0
             ratios = (one if abs(one) > 1e-12 else 0.0 for one in (zeta, after, after - zeta))  # rounding
             found.append((self.line.axis, mode, meant, hz, now, change, *ratios))
