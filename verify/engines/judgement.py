@@ -77,7 +77,7 @@ def judge_file(
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
     exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
-    ran = judge_runs([*(one.line for one in judged), *lone], exact, setting, within)
+    ran = judge_runs([*(one.line for one in judged), *lone], exact, judged[0].present.beam, setting, within)
     others = [*ran.margins, *under_gravity(judged, solids, gravity, within)]
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
@@ -95,7 +95,7 @@ def judge_file(
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
         right = [one.line._replace(springs=one.springs) for one in judged]
-        last = judge_runs([*right, *lone], exact, setting, within).step
+        last = judge_runs([*right, *lone], exact, judged[0].present.beam, setting, within).step
         warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
     names = ["GJ" if one.line.axis == "torsion" else "EI" for one in judged]
@@ -120,9 +120,9 @@ def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[
     """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
     from verify.report.result import Column, Table
 
-    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.about, modes)
-    m, exact = len(hertz), one.present.exact_hz(one.about, len(hertz))
-    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.about, m) / exact - 1.0
+    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.line.turns, modes)
+    m, exact = len(hertz), one.present.exact_hz(one.line.turns, len(hertz))
+    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.line.turns, m) / exact - 1.0
     rows = list(zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True))
     springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
     change = Column("change", format="+.3g", percent=True)

@@ -36,6 +36,11 @@ class Line(NamedTuple):
     dashpots: Array
     armatures: Array
 
+    @property
+    def turns(self) -> Axis:
+        """The axis of its chain alone: "torsion", or "bending" in either plane."""
+        return "torsion" if self.axis == "torsion" else "bending"
+
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
     """The hinges and bodies, the link first, of each rigid part of the chain with springs, from the wall on.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.engines.description import Axis, Hinge, Joint, Link, RigidChain
+from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
 from verify.engines.stiffness_law import ALIKE, ROUGH, Law, law_of
 from verify.errors import InputError
@@ -51,11 +51,6 @@ class Judged(NamedTuple):
     links: list[str]
     advice: list[str]
     odd: list[str]
-
-    @property
-    def about(self) -> Axis:
-        """The axis of its chains."""
-        return "torsion" if self.line.axis == "torsion" else "bending"
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -99,10 +94,9 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
 
 
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
-    """A line with springs, (N,), N m/rad, as a chain about its axis."""
-    axis: Axis = "torsion" if line.axis == "torsion" else "bending"
+    """A line with springs, (N,), N m/rad, as a chain about `line.turns`."""
     edges = np.append(0.0, np.cumsum(line.links[:, 0])).tolist()
-    hinges = [() if np.isnan(one) else (Hinge(axis, float(one)),) for one in [*springs, 0.0]]
+    hinges = [() if np.isnan(one) else (Hinge(line.turns, float(one)),) for one in [*springs, 0.0]]
     rows = zip(edges, line.links.tolist(), strict=False)
     links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)

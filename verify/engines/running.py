@@ -17,10 +17,11 @@ from verify.arrays import Array
 from verify.engines.integrators import integrator_of, scheme_of
 from verify.engines.line import Line
 from verify.engines.reading import Setting, Solid
-from verify.engines.rules import Judged
+from verify.engines.rules import Judged, rigid
 from verify.engines.steps import Simulated
 from verify.errors import InputError
 from verify.formatting import with_unit
+from verify.problem.beam import Beam
 from verify.validation import check_number
 
 if TYPE_CHECKING:
@@ -86,23 +87,20 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
     return setting if step is None else setting._replace(step=step)
 
 
-def _motion(line: Line, exact: Array, setting: Setting) -> Motion:
+def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
     """The matrices of a line in the steps of a setting."""
-    (lengths, masses, centres, inertias), hinged = line.links.T, ~np.isnan(line.springs)
-    edges, turned = np.cumsum(lengths) - lengths, np.tril(np.ones((len(lengths), len(lengths))))[:, hinged]
-    across = turned * ((edges + centres)[:, None] - edges[hinged]) * (line.axis != "torsion")
-    mass = (turned.T * inertias) @ turned + (across.T * masses) @ across
-    damping, stiffness, armature = (np.diag(one[hinged]) for one in (line.dashpots, line.springs, line.armatures))
+    mass, stiffness = rigid(line, line.springs, beam, "").matrices(line.turns)
+    damping, armature = (np.diag(one[~np.isnan(line.springs)]) for one in (line.dashpots, line.armatures))
     file = Simulated(mass, damping, stiffness, setting.step, scheme_of(*setting[:2]))
     return Motion(line, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
 
 
-def judge_runs(lines: Sequence[Line], exact: Sequence[Array], setting: Setting, within: float) -> Ran:
+def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, setting: Setting, within: float) -> Ran:
     """Margins, a sentence and a table of chains in the steps of a setting; `exact`: undamped Hz of their beams."""
     lacks = [f"--{name}" for name, known in (("engine", setting.engine), ("step", isfinite(setting.step))) if not known]
     if lacks:
         return Ran([], [f"in space only: give {' and '.join(lacks)} for a verdict over the file as it runs"], {})
-    motions = [_motion(line, hertz, setting) for line, hertz in zip(lines, exact, strict=True)]
+    motions = [_motion(line, hertz, beam, setting) for line, hertz in zip(lines, exact, strict=True)]
     rows, warnings = [row for one in motions for row in one.rows()], [setting.note] if setting.note else []
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
     run, limit, at = worst.run, float(worst.run.limit), f" in {worst.line.axis}" * (len(motions) > 1)
