@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from functools import partial
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ from verify.problem.supports import FIXED
 if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
+OF = {"bending": "EI", "torsion": "GJ"}
 NOTICED = 0.1
 """Part of the acceptance up to which an error of a mode may grow by a correction."""
 
@@ -69,15 +71,15 @@ def judge_file(
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
-    twisted = every[len(found) :]
-    judged += filter(None, (judge_twist(line, beam) for line in twisted))
-    lone = twisted if judged[-1].line.axis != "torsion" else []
+    judged += filter(None, (judge_twist(line, beam) for line in every[len(found) :]))
+    lone = every[len(judged) :]
     error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
     exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
-    ran = judge_runs([*(one.line for one in judged), *lone], exact, judged[0].present.beam, setting, within)
+    run = partial(judge_runs, exact=exact, beam=judged[0].present.beam, setting=setting, within=within)
+    ran = run([*(one.line for one in judged), *lone])
     others = [*ran.margins, *under_gravity(judged, solids, gravity, within)]
     tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
@@ -85,27 +87,20 @@ def judge_file(
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
         others.append(Margin(size=size, fine=within, limit=within, leads=True, **words))
-    warnings += [*ran.warnings, *_hints(solids, judged, beam), *filter(None, worse)]
-    if lone and not lone[0].ball:
-        warnings.append(
-            "torsion is not judged: joints and inertias are of no uniform shaft, give a scene with sections"
-        )
+    warnings += [*ran.warnings, *_hints(solids, judged, beam, lone), *filter(None, worse)]
     if corrected and (clashes or any(worse)):
         why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
         right = [one.line._replace(springs=one.springs) for one in judged]
-        last = judge_runs([*right, *lone], exact, judged[0].present.beam, setting, within).step
+        last = run([*right, *lone]).data.get("within", 0.0)
         warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
-    names = ["GJ" if one.line.axis == "torsion" else "EI" for one in judged]
-    rules = [
-        f"{one.line.axis}: {one.rule}, {of} = {one.stiffness:.6g} N m2" for one, of in zip(judged, names, strict=True)
-    ]
+    rules = [f"{one.line.axis}: {one.rule}, {OF[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
-    summary = f"{sizes}; {'; '.join(rules)}. {ran.words}".strip()
-    passed = max(float(abs(one["error"]).max()) for one in data) <= within
-    known = {"passed": passed and all(one.size <= within for one in others), "chains": list(data), "run": ran.data}
+    summary = f"{sizes}; {'; '.join(rules)}. {ran.summary}".strip()
+    worst = max([one.size for one in others] + [float(abs(one["error"]).max()) for one in data])
+    known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
     margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
     return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
@@ -170,11 +165,13 @@ def _cause(one: Judged) -> str:
     return "give more links"
 
 
-def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None) -> list[str]:
-    """What the frequencies leave out: ball joints; the modulus that EI means for round links."""
+def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: list[Line]) -> list[str]:
+    """What the frequencies leave out: ball joints, torsion; the modulus that EI means for round links."""
     hints = list[str]()
     if any(one.line.ball for one in judged):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
+    elif untwisted:
+        hints.append("torsion is not judged: joints and inertias are of no uniform shaft, give a scene with sections")
     radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9

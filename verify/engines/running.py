@@ -25,7 +25,7 @@ from verify.problem.beam import Beam
 from verify.validation import check_number
 
 if TYPE_CHECKING:
-    from verify.report.result import Table
+    from verify.report.result import Result, Table
 
 ADDED = 0.1
 """Damping by the integrator, over that of the file, from which it is named."""
@@ -63,28 +63,16 @@ class Motion(NamedTuple):
         return found
 
 
-class Ran(NamedTuple):
-    """What `judge_runs` finds: `words` of the summary; `step` within all errors, s, 0: none is needed or known."""
-
-    margins: list[Margin]
-    warnings: list[str]
-    data: dict[str, Any]
-    words: str = ""
-    tables: "Sequence[Table]" = ()
-    step: float = 0.0
-
-
 def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
     """That of a file, but `engine` 'NAME' or 'NAME:INTEGRATOR' and `step`, s, where given. Raises InputError."""
     name, _, integrator = engine.partition(":")
     if name and (integrator or name.casefold() != setting.engine.casefold()):
         setting = setting._replace(engine=name, integrator=integrator)
     if setting.engine:
-        row = integrator_of(*setting[:2])
-        setting = setting._replace(engine=row.engine, integrator=row.setting)
+        setting = setting._replace(**dict(zip(("engine", "integrator"), integrator_of(*setting[:2]), strict=False)))
     if step is not None:
         check_number("step", step, "s", above=0)
-    return setting if step is None else setting._replace(step=step)
+    return setting._replace(step=step or setting.step)
 
 
 def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
@@ -95,11 +83,18 @@ def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
     return Motion(line, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
 
 
-def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, setting: Setting, within: float) -> Ran:
-    """Margins, a sentence and a table of chains in the steps of a setting; `exact`: undamped Hz of their beams."""
+def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, setting: Setting, within: float) -> "Result":
+    """Chains in the steps of a setting, `exact` undamped Hz of their beams; no `data` where the setting is unknown.
+
+    `data["within"]`: step, s, within all errors, 0 where this one is or none is known.
+    """
+    from verify.report.result import Result
+
     lacks = [f"--{name}" for name, known in (("engine", setting.engine), ("step", isfinite(setting.step))) if not known]
     if lacks:
-        return Ran([], [f"in space only: give {' and '.join(lacks)} for a verdict over the file as it runs"], {})
+        return Result(
+            "", warnings=[f"in space only: give {' and '.join(lacks)} for a verdict over the file as it runs"]
+        )
     motions = [_motion(line, hertz, beam, setting) for line, hertz in zip(lines, exact, strict=True)]
     rows, warnings = [row for one in motions for row in one.rows()], [setting.note] if setting.note else []
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
@@ -127,23 +122,24 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
         bounds += [f"{accuracy} in {what} up to {_time(h)}"] if 0.0 < h < inf else []
     words = f"{name}, {with_unit(setting.step, 's')}: {', '.join([*bounds, 'small vibration about rest'])}."
     data = {"engine": name, "step": setting.step, "limit": limit, "stable": run.stable, "substeps": run.substeps}
-    data |= {"omega_max": run.omega_max, "axis": worst.line.axis, "accurate_steps": steps}
     good = min(0.5 * limit, *steps) if margin.level != "trusted" else inf
-    return Ran([margin], warnings, data, words, [_table(rows)], _floor(good, 2) if 0.0 < good < inf else 0.0)
+    data |= {"omega_max": run.omega_max, "axis": worst.line.axis, "accurate_steps": steps}
+    data["within"] = _floor(good, 2) if 0.0 < good < inf else 0.0
+    return Result(words, [_table(rows)], warnings=warnings, margins=[margin], data=data)
 
 
-def _accurate(motions: Sequence[Motion], within: float) -> tuple[float, float]:
+def _accurate(motions: Sequence[Motion], within: float) -> list[float]:
     """Largest steps, s, at which frequency, and damping ratio, of the last mode are `within` those of the file.
 
     inf: every step, and with armature, which is right at one step.
     """
     found = [inf, inf]
     for one in (each for each in motions if each.file is each.run):
-        for i in range(2):
-            with suppress(InputError):  # an overdamped mode has no frequency
-                step = one.file.step_for(one.first + len(one.exact), within, damping=bool(i))
-                found[i] = min(found[i], float(step))
-    return found[0], found[1]
+        with suppress(InputError):  # an overdamped mode has no frequency
+            mode = one.first + len(one.exact)
+            steps = [float(one.file.step_for(mode, within, damping=damping)) for damping in (False, True)]
+            found = [min(pair) for pair in zip(found, steps, strict=True)]
+    return found
 
 
 def _error(rows: list[tuple[Any, ...]], several: bool, whose: str, within: float) -> tuple[Margin, list[str]]:
