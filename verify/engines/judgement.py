@@ -73,15 +73,15 @@ def judge_file(
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
     judged += filter(None, (judge_twist(line, beam) for line in every[len(found) :]))
     lone = every[len(judged) :]
-    error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
-    hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
+    columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
+    columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
     exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
     run = partial(judge_runs, exact=exact, beam=judged[0].present.beam, setting=setting, within=within)
     ran = run([*(one.line for one in judged), *lone])
     others = [*ran.margins, *under_gravity(judged, solids, gravity, within)]
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *ran.tables, *joints]
+    tables = [Table("Frequencies", columns, rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
     for text, size, remedy in clashes:
@@ -98,7 +98,7 @@ def judge_file(
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
     rules = [f"{one.line.axis}: {one.rule}, {OF[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
-    summary = f"{sizes}; {'; '.join(rules)}. {ran.summary}".strip()
+    summary = f"{'; '.join([sizes, *rules])}. {ran.summary}".strip()
     worst = max([one.size for one in others] + [float(abs(one["error"]).max()) for one in data])
     known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
     margins = others + (margins if ran.data else [in_space_only(one) for one in margins])

@@ -69,7 +69,8 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
     if name and (integrator or name.casefold() != setting.engine.casefold()):
         setting = setting._replace(engine=name, integrator=integrator)
     if setting.engine:
-        setting = setting._replace(**dict(zip(("engine", "integrator"), integrator_of(*setting[:2]), strict=False)))
+        row = integrator_of(*setting[:2])
+        setting = setting._replace(engine=row.engine, integrator=row.setting)
     if step is not None:
         check_number("step", step, "s", above=0)
     return setting._replace(step=step or setting.step)
@@ -92,9 +93,8 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
 
     lacks = [f"--{name}" for name, known in (("engine", setting.engine), ("step", isfinite(setting.step))) if not known]
     if lacks:
-        return Result(
-            "", warnings=[f"in space only: give {' and '.join(lacks)} for a verdict over the file as it runs"]
-        )
+        text = f"in space only: give {' and '.join(lacks)} for the verdict over the file as it runs"
+        return Result(warnings=[text])
     motions = [_motion(line, hertz, beam, setting) for line, hertz in zip(lines, exact, strict=True)]
     rows, warnings = [row for one in motions for row in one.rows()], [setting.note] if setting.note else []
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
