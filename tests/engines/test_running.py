@@ -87,9 +87,7 @@ def test_a_cable_at_two_milliseconds_diverges(tmp_path, capsys):
     run = judge_file(path, None, 3).data["run"]
     assert (run["limit"], run["substeps"], run["stable"]) == (pytest.approx(2 / top, rel=1e-6), 33, False)
     assert [grows(path, share * run["limit"]) for share in (0.99, 1.01)] == [False, True]
-    assert judge_file(out, None, 3).data["passed"]
-    assert not grows(out)
-    assert out.read_text().count("timestep") == 1
+    assert (judge_file(out, None, 3).data["passed"], grows(out)) == (True, False)
 
 
 @pytest.mark.parametrize(("integrator", "step"), [("discrete", 2e-3), ("implicitfast", 5e-5)])
@@ -169,10 +167,9 @@ def test_step_of_an_sdf_world(tmp_path):
 
 def test_the_axis_that_sets_the_step_and_the_joint_at_the_wall_in_torsion(tmp_path):
     path, out = written(tmp_path / "s.xml", step=4e-5, in_space=True), tmp_path / "out.xml"
-    limits = {axis: 2 / omegas(load(path), axis)[-1] for axis in ("bending", "width", "torsion")}
+    limit, axis = min((2 / omegas(load(path), axis)[-1], axis) for axis in ("bending", "width", "torsion"))
     run = judge_file(path, None, 3).data["run"]
-    assert (run["axis"], run["limit"]) == ("width", pytest.approx(limits["width"], rel=1e-6))
-    assert min(limits, key=limits.get) == "width"
+    assert (run["axis"], run["limit"]) == (axis, pytest.approx(limit, rel=1e-6))
     half = r'(joint0_torsion.*?stiffness=")([\d.]+)', lambda old: f"{old[1]}{float(old[2]) / 2!r}"
     written(path, step=4e-5, in_space=True, edit=half)
     for beam in (None, STEEL):
@@ -199,9 +196,8 @@ def test_a_weight_that_changes_the_first_frequency_is_named(tmp_path, case):
     path = written(tmp_path / "rope.xml", step=1e-5, edit=('gravity="0 0 0"', gravity))
     result = judge_file(path, None, 3)
     assert result.data["passed"] == (abs(change) < 0.01)
-    if not result.data["passed"]:
-        assert result.verdict.headline.count("not judged under gravity") == 1
-        assert f"{weight:.3g} EI/L^2" in result.verdict.headline
+    words = ("not judged under gravity", f"{weight:.3g} EI/L^2")
+    assert all((word in result.verdict.headline) != result.data["passed"] for word in words)
     if weight == 1.2:
         assert result.verdict.margins[0].size == pytest.approx(change, rel=0.03)
 

@@ -27,7 +27,7 @@ from verify.problem.supports import FIXED
 if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
-OF = {"bending": "EI", "torsion": "GJ"}
+STIFFNESS = {"bending": "EI", "torsion": "GJ"}
 NOTICED = 0.1
 """Part of the acceptance up to which an error of a mode may grow by a correction."""
 
@@ -64,8 +64,7 @@ def judge_file(
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
     kind, solids, gravity, own = read(path)
     setting, every = setting_of(own, engine, step), lines(solids, path.name)
-    found = [line for line in every if line.axis != "torsion"]
-    in_space = len(found) > 1 and all(line.solid for line in found)
+    in_space = len(found := [line for line in every if line.axis != "torsion"]) > 1 and all(one.solid for one in found)
     theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
@@ -96,12 +95,12 @@ def judge_file(
         last = run([*right, *lone]).data.get("within", 0.0)
         warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
-    rules = [f"{one.line.axis}: {one.rule}, {OF[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
+    rules = [f"{one.line.axis}: {one.rule}, {STIFFNESS[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{'; '.join([sizes, *rules])}. {ran.summary}".strip()
     worst = max([one.size for one in others] + [float(abs(one["error"]).max()) for one in data])
-    known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
     margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
+    known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
     return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
 

@@ -108,7 +108,7 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
     remedy = f"time step at most {_time(min(steps))} for {accuracy}" if 0.0 < min(steps) < limit else ""
     remedy = remedy if min(limit, *steps) else "choose another integrator"
     if run.stable:
-        margin, more = _error(rows, bool(at), "the integrator's" + " and armature's" * armature, within)
+        margin, more = _error(rows, bool(at), "the integrator" + " and armature" * armature, within)
         step = with_unit(setting.step, "s")
         margin, warnings = msgspec.structs.replace(margin, name=f"time step of {step}", remedy=remedy), warnings + more
     else:
@@ -142,21 +142,21 @@ def _accurate(motions: Sequence[Motion], within: float) -> list[float]:
     return found
 
 
-def _error(rows: list[tuple[Any, ...]], several: bool, whose: str, within: float) -> tuple[Margin, list[str]]:
+def _error(rows: list[tuple[Any, ...]], several: bool, cause: str, within: float) -> tuple[Margin, list[str]]:
     """(margin of the mode that differs most from the file, what is added to the damping where that is permitted)."""
     sizes = [hypot(row[5], row[8]) if isfinite(row[5]) else inf for row in rows]
     axis, mode, _, hz, now, _, zeta, after, added = rows[int(np.argmax(sizes))]
     size, where = max(sizes), f" in {axis}" * several
     text = f"mode {mode}{where} flips its sign at every step"
     if size < inf:
-        share = f", {100.0 * abs(added):.2g} points {'of it' if added > 0.0 else 'less by'} {whose}"
+        share = f", {100.0 * added:.2g} points of it {cause}'s" * (added >= 0.0005)
         text = f"mode {mode}{where} runs at {three_digits(now)} Hz with {per_cent(after)} damping"
-        text += share * (abs(added) >= 0.0005) + f", in place of {three_digits(hz)} Hz with {per_cent(zeta)}"
+        text += f"{share}, in place of {three_digits(hz)} Hz with {per_cent(zeta)}"
     margin = Margin(name="", where=f"at mode {mode} in {axis}", failure=text, size=size, fine=within, limit=within)
     axis, mode, *_, zeta, after, added = max(rows, key=lambda row: row[8])
     if size > within or added <= ADDED * zeta + 1e-6:
         return margin, []
-    return margin, [f"damping {per_cent(after)} at mode {mode} in {axis} in place of {per_cent(zeta)}, by {whose}"]
+    return margin, [f"damping {per_cent(after)} at mode {mode} in {axis} in place of {per_cent(zeta)}, by {cause}"]
 
 
 def _table(rows: list[tuple[Any, ...]]) -> "Table":
@@ -188,7 +188,7 @@ def under_gravity(judged: Sequence[Judged], solids: Sequence[Solid], gravity: Ar
             float(gravity @ one) * float(masses.sum()) * length**2 / stiffness
             for one in (np.cross(np.array(line.about.split(), dtype=float), along), along)
         )
-        sag = uneven * abs(down) / 8.0 if line.springs[0] or not down else inf
+        sag = uneven * abs(down) / 8.0 if line.springs[0] or abs(down) < 0.01 else inf  # a free joint at the wall
         text = f"its weight, {abs(down):.3g} EI/L^2, bends it by {sag:.2g} of its length (linear theory)"
         found.append((SAG * sag**2, text))
         change = 0.5 * max(uneven * pull / BUCKLING, -1.0)
