@@ -16,8 +16,8 @@ def run():
 
     def run_study(scene, study):
         loaded = load_scene(scene) if isinstance(scene, str) else scene
-        for scene, asked, result in results:
-            if scene == loaded and asked == study:
+        for known, asked, result in results:
+            if known == loaded and asked == study:
                 return result
         study.check(loaded)
         steps = []
