@@ -15,7 +15,8 @@ PASSES = 40
 """Most iterations of an equilibrium. The compliance of the unloaded beam is that of the loaded one up to the rotation
 of its surface, so that a few iterations end in practice."""
 SETTLED = 1e-14
-"""Change of the surface, over its largest displacement, at which an equilibrium is at its rounding."""
+"""Change of the surface, over its largest displacement or that by all forces in one sense where those of a clasp
+cancel, at which an equilibrium is at its rounding."""
 CLOSE = 1e-9
 """The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there."""
 
@@ -40,9 +41,10 @@ def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Arra
             depth = p["inset"] + p["face"] * p["image"] * level
             normal, place = _carried(assembly, depth + compliance @ normal, compliance, moves)
             assembly.feet["pitch"] = place[:, 1]
-        if abs(level - before).max() <= SETTLED * abs(level).max():
+        change, size = abs(level - before).max(), max(abs(level).max(), (abs(compliance) @ normal).max())
+        if change <= SETTLED * size:
             break
-    if not abs(level - before).max() <= CLOSE * abs(level).max():
+    if not change <= CLOSE * size:
         raise InputError(f"slider.preload: beam and slider have no equilibrium within {PASSES} iterations, lower it")
     return np.asarray(place[:, 2])
 
