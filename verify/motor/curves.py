@@ -5,6 +5,7 @@ light free slider (`transient`) differs, since its speed varies within the perio
 sliding period, which are independent of the phase of the drive at the start.
 """
 
+from collections.abc import Sequence
 from math import ceil, e
 from typing import Literal
 
@@ -62,28 +63,51 @@ REASONS: dict[str, str] = {
 """Reasons why a result is not available."""
 
 
-def no_load(case: MotorCase, periods: int = PERIODS) -> SteadyState:
+def no_load(case: MotorCase, periods: int = PERIODS, known: Sequence[SteadyState] = ()) -> SteadyState:
     """Steady state at the speed, up to twice the crest speed, at which the mean friction force vanishes.
 
-    Raises InputError if the force has one sign in that range, or has not converged at the root.
+    `known` are states at other speeds, the first at standstill. The search ends at a force within its error; `speed`
+    is an `Estimate` with the error that this leaves. Raises InputError if the force has one sign in that range, or has
+    not converged near the root, with the interval of speeds in which it is.
     """
     from scipy.optimize import brentq
 
-    states = {0.0: steady_state(case, 0.0, periods)}
-    end = float(np.copysign(2.0 * crest_speed(case), states[0.0].means.force))
+    states = {one.speed: one for one in known or [steady_state(case, 0.0, periods)]}
+    still = states[0.0]
 
     def force(speed: float) -> float:
+        """Mean friction, N, zero within its error."""
         if speed not in states:
-            states[speed] = steady_state(case, speed, periods, states[0.0].run, relative=0.01)
-        return states[speed].means.force
+            states[speed] = steady_state(case, speed, periods, still.run, relative=0.01)
+        mean, error = states[speed].means.force, states[speed].errors.force
+        return mean if abs(mean) > error else 0.0
 
-    if force(0.0) * force(end) > 0.0:
+    def ends() -> tuple[float, float]:
+        """The slowest speed with the other sign than at standstill, and the fastest below it with the same, m/s."""
+        beyond = min((v for v in states if force(v) * still.means.force < 0.0), key=abs, default=limit)
+        return max((v for v in states if abs(v) < abs(beyond) and force(v)), key=abs, default=0.0), beyond
+
+    def inside(speed: float) -> float:
+        """The force at a speed of the search, of whose ends the sign is enough."""
+        value, state = force(speed), states[speed]
+        enough = 0.01 if speed not in bracket else 1.0
+        if not state.converged("force") and state.errors.force >= enough * abs(value):
+            low, high = sorted(ends())
+            between = f"no-load speed so far: {with_unit(low, 'm/s')} to {with_unit(high, 'm/s')}"
+            raise InputError(f"periods = {periods!r}: {REASONS['force']} ({between})")
+        return value
+
+    limit = float(np.copysign(2.0 * crest_speed(case), still.means.force))
+    bracket = ends()
+    if force(bracket[0]) * force(bracket[1]) > 0.0:
         raise InputError(f"slider.preload = {case.slider.preload!r} N: {REASONS['no load']}")
-    root = float(brentq(force, 0.0, end, xtol=1e-6 * abs(end)))
-    force(root)
-    if not states[root].converged("force"):
-        raise InputError(f"periods = {periods!r}: {REASONS['force']}")
-    return states[root]
+    root = float(brentq(inside, *bracket, xtol=1e-6 * abs(limit)))
+    inside(root)
+    sides = [one for one in ends() if one != root] or bracket
+    slopes = [(states[one].means.force - states[root].means.force) / (one - root) for one in sides if one != root]
+    return replace(
+        states[root], speed=Estimate(root, states[root].errors.force / max(map(abs, slopes), default=np.inf))
+    )
 
 
 class TimeConstant(Struct, frozen=True, kw_only=True):

@@ -17,6 +17,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
@@ -27,7 +28,7 @@ from verify.dynamics.result import Motion
 from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.estimate import Estimate
-from verify.formatting import one_line
+from verify.formatting import one_line, with_error
 from verify.linear.surface import section_at
 from verify.problem.beam import Beam, PointLoad
 from verify.problem.slider import Slider
@@ -49,7 +50,7 @@ TOLERANCES: "dict[Figure, tuple[float, float]]" = {
 }
 """Largest error over full scale (mu N, N, 1, mu N times the largest slip speed), before and from `CHAOTIC` on."""
 UNCONVERGED: dict[str, str] = {
-    "force": "the mean friction force has not converged, raise periods, slider.contact.damping or slider.preload",
+    "force": "the mean friction force has not converged, raise periods or slider.preload",
     "normal force": "the mean normal force has not converged, raise periods or slider.contact.damping",
     "fractions": "the fractions of contact and stick have not converged, raise periods or slider.contact.damping",
     "powers": "the mean powers have not converged, raise periods or slider.contact.damping",
@@ -62,6 +63,9 @@ GROUPS: "dict[str, Figure]" = {
     "friction_power": "powers",
 }
 """Criterion of convergence of a mean; that of all others is the force."""
+UNITS: "dict[Figure, str]" = {"force": " N", "normal force": " N", "fractions": "", "powers": " W"}
+TIMED = 16
+"""Periods over which the time of a period is measured, to some per cent."""
 SLIPS = 8.0
 """Slider displacement in the first window over mu N / (stiffness of the softest point), at which all points slip."""
 
@@ -109,17 +113,21 @@ class MotorCase(Struct, frozen=True, kw_only=True):
 
 @lru_cache(maxsize=16)
 def surface_motion(case: MotorCase) -> tuple[float, float]:
-    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) at the slider's position, without slider."""
+    """(deflection amplitude, m, crest speed (h/2) omega |w'|, m/s) at the slider's position, without slider.
+
+    The crest speed has the sign of the velocity along +x at a crest: negative for a wave towards +x.
+    """
     settings = case.model, case.count, case.beam, case.forces, case.frequency_hz, case.modal_damping
     field = steady_beam(*settings, case.circuits).field
     x = case.slider.initial_position(case.beam)
     tangential = section_at(case.beam, x).surface_distance * field.omega
-    return float(abs(field.deflection([x]))[0]), tangential * float(abs(field.slope([x]))[0])
+    deflection, slope = complex(field.deflection([x])[0]), complex(field.slope([x])[0])
+    return abs(deflection), tangential * float(np.copysign(abs(slope), (slope * deflection.conjugate()).imag))
 
 
 def crest_speed(case: MotorCase) -> float:
     """Amplitude of the tangential surface velocity under the slider, first order, m/s."""
-    return surface_motion(case)[1]
+    return abs(surface_motion(case)[1])
 
 
 class Means(NamedTuple):
@@ -148,7 +156,8 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
     """Means over the last window."""
     errors: Means
     """Errors of the means: the larger of twice the standard error of the batch means and the difference of the window's
-    halves; for the normal force the momentum balance; for the powers the change from the previous window."""
+    halves; for the normal force the momentum balance; for the powers the change from the previous window. A force that
+    has not converged has at least its change from the two windows before, since the motion may change its kind."""
     periods: int
     """Number of periods of all windows."""
     not_converged: tuple[Figure, ...]
@@ -171,7 +180,10 @@ class SteadyState(Struct, frozen=True, eq=False, kw_only=True):
         """One of `Means`, the power, or the efficiency (whose error is 0), SI. Raises InputError if not converged."""
         criteria: tuple[Figure, ...] = ("force", "powers") if figure == "efficiency" else (GROUPS.get(figure, "force"),)
         if missing := next((name for name in criteria if not self.converged(name)), None):
-            raise InputError(f"periods = {self.periods!r}: {UNCONVERGED[missing]}")
+            name = figure if figure in Means._fields else "force" if missing == "force" else "friction_power"
+            so_far = with_error(getattr(self.means, name), getattr(self.errors, name))
+            text = f"{UNCONVERGED[missing]} ({name.replace('_', ' ')} so far: {so_far}{UNITS[missing]})"
+            raise InputError(f"periods = {self.periods!r}: {text}")
         if figure == "power":
             return Estimate(self.power, abs(self.speed) * self.errors.force)
         if figure != "efficiency":
@@ -200,11 +212,22 @@ def steady_state(
     first = copysign(max(abs(speed), least), speed) if speed else 0.0
     state = _window(case, first, FIRST, before, None)
     state = _window(case, speed, FIRST, state.run, state)
+    forces = [state.means.force]
     while state.not_converged and 2 * state.periods <= periods:
         if state.errors.force < relative * abs(state.means.force):
             break
         state = _window(case, speed, state.periods, state.run, state)
-    return state
+        forces.append(state.means.force)
+    if state.converged("force"):
+        return state
+    changes = np.abs(np.subtract(forces[-3:], forces[-1]))
+    return replace(state, errors=state.errors._replace(force=max(state.errors.force, float(changes.max()))))
+
+
+def seconds_per_period(case: MotorCase) -> float:
+    """Measured processor time of a drive period of the slider at standstill, s."""
+    first = case.run(1.0, 2, None, 0.0)  # which may compile
+    return case.run(TIMED, 2, first, 0.0).statistics.loop_s / TIMED
 
 
 def _window(

@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from verify.motor.curves import TimeConstant, Transient
     from verify.motor.steady_state import MotorCase, SteadyState
 
+SEARCH = 8
+"""Steady states of the search for the no-load speed, most of them near the root."""
+LEAST = 96
+"""Drive periods of the shortest steady state, and of the shortest free run."""
 TIME_CONSTANTS = 8.0
 """Shown of starting, stopping and reversing."""
 SPEED = ("speed", "m/s")
@@ -37,13 +41,38 @@ IN_TIME = (
     "(dotted), drive phases reversed (dashed). The beam's own transient is neglected."
 )
 NOTES = (
-    "Crest speed: amplitude of the tangential surface velocity at the slider. No-load speed: prescribed, with zero "
-    "mean force, of a heavy slider. Free speed: mean of a slider of its own mass over the last quarter of a free run, "
-    "not given where it has not converged; its error includes the change from the two quarters before.",
+    "Speeds are along +x. Crest speed: amplitude of the tangential surface velocity at the slider, with the sign at a "
+    "crest, negative for a wave towards +x. No-load speed: prescribed, with zero mean force, of a heavy slider. Free "
+    "speed: mean of a slider of its own mass over the last quarter of a free run, not given where it has not "
+    "converged; its error includes the change from the two quarters before.",
     "Largest power and best efficiency: over the prescribed speeds. Friction and dashpot power: of the free run.",
     "Fractions: last quarter of the free run. Start, stop, reversal: 1 - 1/e of the change of the mean over a sliding "
     "period, where this mean converges without an overshoot of 5 % in a drive period or more.",
 )
+
+
+@dataclass(eq=False)
+class Allowance:
+    """Drive periods for the figures of one model."""
+
+    per_period: float
+    """Processor time of a period, s."""
+    left: float
+    """Periods of the steady states to come, and their number; `free` are those of up to three free runs."""
+    figures: int
+    free: int
+
+    @property
+    def most(self) -> int:
+        """Most periods of the next steady state."""
+        from verify.motor.steady_state import PERIODS
+
+        return int(min(PERIODS, max(self.left / max(self.figures, 1), LEAST)))
+
+    def text(self) -> str:
+        """The most time that is left: 'at most 40 s left'."""
+        seconds = self.per_period * (self.most * self.figures + 3 * self.free)
+        return f"at most {seconds:.2g} s left" if seconds < 99.5 else f"at most {seconds / 60.0:.0f} min left"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +89,9 @@ class Field:
     reversal: "Transient | None"
     times: "dict[str, TimeConstant]"
     missing: list[str]
-    """Why figures are not available, keys of `curves.REASONS`."""
+    """Why figures are not available, in words."""
+    longer: str
+    """The remedy where `seconds` limits the means, else empty."""
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -76,6 +107,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     soft_start_periods: Annotated[float, Meta(ge=0, description="Periods over which forces from rest grow.")] = 0.0
     modal_damping: Damping | None = None
     steps_per_period: Annotated[int, Meta(ge=16, le=4096, description="Steps in a period, at least.")] = 61
+    seconds: Annotated[float, Meta(gt=0, description="Processor time for all of it; then means with errors.")] = 120.0
 
     def __post_init__(self) -> None:
         for model in self.models:
@@ -84,8 +116,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def steps(self) -> int:
-        """Points of force over speed, no-load speed and free run on every model."""
-        return len(self.models) * (self.speeds + 2)
+        """Time per period, points of force over speed, no-load speed and free run on every model."""
+        return len(self.models) * (self.speeds + 3)
 
     def check(self, scene: Scene) -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
@@ -98,8 +130,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Run the motor on every model. Raises InputError."""
-        from verify.motor.curves import REASONS
-
         n = self.count or sufficient_count(cache, frequency_hz=scene.drive.frequency_hz if scene.drive else None)
         fields, number = list[Field](), iter(range(1, self.steps + 1))
         settings: dict[str, Any] = {name: getattr(self, name) for name in ("modal_damping", "steps_per_period")}
@@ -119,9 +149,21 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             summary=f"{summary} ({first.name})." if valid else "",
             tables=[*_tables(fields), *([readings(scene)] if scene.motion and first.case.beam == scene.beam else [])],
             figures=_figures(fields, margins),
-            warnings=[f"{field.name}: {REASONS[key]}." for field in fields for key in field.missing],
+            warnings=[f"{field.name}: {text}." for field in fields for text in field.missing],
             margins=margins,
         )
+
+    def _allowance(self, case: "MotorCase", name: str) -> Allowance:
+        """The share of one model in `seconds`, by the measured time of a period. Raises InputError below the least."""
+        from verify.motor.steady_state import seconds_per_period
+
+        cost, figures, share = seconds_per_period(case), self.speeds + SEARCH, self.seconds / len(self.models)
+        if share < (needed := cost * (figures * LEAST + self.periods)):
+            raise InputError(
+                f"motor.seconds = {self.seconds:g}: {name} takes {1e3 * cost:.2g} ms for a drive period and the motor "
+                f"at least {needed * len(self.models):.2g} s, raise it, or lower motor.speeds or motor.periods"
+            )
+        return Allowance(cost, share / cost - 3 * self.periods, figures, self.periods)
 
     def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: SolutionCache, progress: Progress) -> Field:
         """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
@@ -129,22 +171,30 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         from verify.motor.steady_state import PERIODS, crest_speed, steady_state
 
         name = sized_title(case.model, case.count)
-        progress(f"stall force, {name}")
-        still: SteadyState = cached(cache, steady_state, case, 0.0, PERIODS)
+        progress(f"time per period, {name}")
+        allowed = self._allowance(case, name)
+
+        def step(what: str) -> None:
+            progress(f"{what}, {name}, {allowed.text()}")
+
+        step("stall force")
+        still: SteadyState = cached(cache, steady_state, case, 0.0, allowed.most)
         crest = copysign(crest_speed(case), still.means.force)
         speeds = [at.speed for at in like] or [crest * k / (self.speeds - 1) for k in range(self.speeds)]
         curve = [still]
         for speed in speeds[1:]:
-            progress(f"force at {with_unit(speed, 'm/s', '+.4g')}, {name}")
-            curve.append(steady_state(case, speed, PERIODS, still.run))
-        missing: list[str] = list(dict.fromkeys(figure for at in curve for figure in at.not_converged))
-        unloaded = None
-        progress(f"no-load speed, {name}")
+            allowed.left, allowed.figures = allowed.left - curve[-1].periods, allowed.figures - 1
+            step(f"force at {with_unit(speed, 'm/s', '+.4g')}")
+            curve.append(steady_state(case, speed, allowed.most, still.run))
+        longer = "raise motor.seconds" if allowed.most < PERIODS else ""
+        missing, unloaded, allowed.figures = _unsettled(curve, longer), None, SEARCH
+        step("no-load speed")
         try:
-            unloaded = cached(cache, curves.no_load, case, PERIODS).speed
+            unloaded = curves.no_load(case, allowed.most, curve).speed
         except InputError as error:
-            missing.append("force" if curves.REASONS["force"] in str(error) else "no load")
-        progress(f"free run, {name}")
+            missing.append(f"no no-load speed, {error}")
+        allowed.figures = 0
+        step("free run")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
         free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
         rings = case.slider.coupling == "two-way"
@@ -163,11 +213,9 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             times["reversal"] = reversal.time_constant()
             if not reversal.converged:
                 times["reversal"] = replace(times["reversal"], missing="start")
-        missing += dict.fromkeys(
-            key if at.missing == "start" else at.missing for key, at in times.items() if at.missing
-        )
-        missing += ["ringing"] * rings
-        return Field(case, name, curve, unloaded, free, stop, reversal, times, missing)
+        reasons = [key if at.missing == "start" else at.missing for key, at in times.items() if at.missing]
+        missing += [curves.REASONS[key] for key in dict.fromkeys([*reasons, *["ringing"] * rings])]
+        return Field(case, name, curve, unloaded, free, stop, reversal, times, missing, longer)
 
 
 def _with_error(name: str, value: float, error: float, symbol: str) -> str:
@@ -177,9 +225,41 @@ def _with_error(name: str, value: float, error: float, symbol: str) -> str:
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
 
 
+def _unsettled(curve: "list[SteadyState]", longer: str) -> list[str]:
+    """A warning on means that have not converged; none where all have."""
+    off = [at for at in curve if not at.converged()]
+    figures = ", ".join(dict.fromkeys(figure for at in off for figure in at.not_converged))
+    periods = max((at.periods for at in off), default=0)
+    what = f"{figures} not converged at {len(off)} of {len(curve)} speeds after {periods} drive periods"
+    return [", ".join(filter(None, (what, "the tables give means so far with errors", longer)))] * bool(off)
+
+
+def _convergence(field: Field) -> list[Margin]:
+    """Margins of a free run and of a stall force that have not converged, with the means so far."""
+    from verify.motor.curves import REASONS
+
+    found, free, still = list[Margin](), field.free, field.curve[0]
+    if not free.converged and free.run.statistics.finished:
+        so_far = f"mean so far {with_error(1e3 * free.speed, 1e3 * free.error, '+')} mm/s, {field.name}"
+        found.append(void("the free run", f"{REASONS['free speed']} ({so_far})"))
+    if not still.converged("force"):
+        so_far = f"{with_error(still.means.force, still.errors.force, '+')} N"
+        found.append(
+            Margin(
+                name="error of the stall force",
+                size=still.errors.force / (abs(still.means.force) or still.errors.force),
+                where=f"after {still.periods} drive periods ({field.name})",
+                condition=f"the stall force may be its mean so far, {so_far}",
+                failure=f"after {still.periods} drive periods the stall force is known to {so_far} ({field.name})",
+                remedy=field.longer or "a motion of one kind has a closer mean: change slider.preload or frequency_hz",
+                harm="discretisation",
+            )
+        )
+    return found
+
+
 def _margins(fields: list[Field], scene: Scene, cache: SolutionCache) -> list[Margin]:
     """Margins of the scene at the drive, free runs, and figures that have not converged."""
-    from verify.motor.curves import REASONS
     from verify.motor.steady_state import surface_motion
 
     case = fields[0].case
@@ -187,11 +267,7 @@ def _margins(fields: list[Field], scene: Scene, cache: SolutionCache) -> list[Ma
     runs, wave = [(field.name, field.free.run) for field in fields], surface_motion(case)[0]
     at: dict[str, Any] = {"frequency_hz": case.frequency_hz, "amplitude": wave}
     margins = scene_margins(scene, cache, sizes, slider=case.slider, runs=runs, **at)
-    for field in fields:
-        if not field.free.converged and field.free.run.statistics.finished:
-            margins.append(void("the free run", f"{REASONS['free speed']} ({field.name})"))
-        if not field.curve[0].converged("force"):
-            margins.append(void("the stall force", f"{REASONS['force']} ({field.name})"))
+    margins += [margin for field in fields for margin in _convergence(field)]
     if case.slider.coupling == "two-way" and not (case.modal_damping or case.beam.loss_factor):
         free = "free vibrations of the beam, which decay by contact alone, may be left out"
         margins.append(Margin(name="undamped beam", size=0.0, fine=-1.0, is_error=False, condition=free))
@@ -213,11 +289,12 @@ def _tables(fields: list[Field]) -> list[Table]:
     model: dict[Column, Any] = {Column("model"): lambda field: field.name}
     speed = model | {
         si("amplitude", "m"): lambda field: surface_motion(field.case)[0],
-        si("crest speed", "m/s", ".5g"): lambda field: surface_motion(field.case)[1],
+        si("crest speed", "m/s", "+.5g"): lambda field: surface_motion(field.case)[1],
         si("no-load speed", "m/s", "+.5g"): lambda field: field.no_load,
         si("free speed", "m/s", "+.5g"): lambda field: field.free.speed if field.free.converged else None,
         si("its error", "m/s", ".3g"): lambda field: field.free.error,
-        si("stall force", "N", "+.4g"): lambda field: _if(field.curve[0], field.curve[0].means.force),
+        si("stall force", "N", "+.4g"): lambda field: field.curve[0].means.force,
+        si("error of the force", "N", ".2g"): lambda field: field.curve[0].errors.force,
     }
     powers = model | {
         si("largest power", "W"): lambda field: max(_if(at, at.power) or 0.0 for at in field.curve) or None,
