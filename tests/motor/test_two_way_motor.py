@@ -368,3 +368,14 @@ def test_a_preload_that_has_no_equilibrium_within_small_slopes_is_refused(points
     drive = Excitation(PointForce(position=0.05, amplitude=0.1), 400.0)
     with pytest.raises(InputError, match=r"slider\.preload"):
         simulate(strip, drive, 1e-5, count=30, slider=slider, start="rest", keep=Keep(samples=2), step=1e-6)
+
+
+def test_a_clasp_of_equal_feet_is_at_rest_on_a_beam_that_it_does_not_bend():
+    feet = (Foot(length=0.03, points=7), Foot(length=0.03, points=7, face="lower"))
+    own = {"mu": 0.17, "law": "coulomb", "gravity": 0.0, "position": 0.237, "coupling": "two-way", "preload": 3.0}
+    clasp = Slider(mass=0.06, contact=Contact(stiffness=4e5, damping=8.0), foot=feet, **own)
+    still = Excitation([replace(one, amplitude=1e-9) for one in PAIR], STRIP_HERTZ)
+    found = simulate(STRIP, still, 1e-3, slider=clasp, model="analytic", start="rest", keep=Keep(at=0.237, samples=5))
+    assert found.normal_force == pytest.approx(np.full(5, 3.0), rel=1e-6)
+    assert found.pressures.reshape(5, 2, 7).sum(axis=2) == pytest.approx(np.full((5, 2), 1.5), rel=1e-6)
+    assert np.abs(found.deflection).max() < 1e-9

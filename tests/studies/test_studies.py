@@ -8,7 +8,9 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.exact.closed_forms import frequency_hz
 from verify.linear.registry import MODELS
+from verify.motor.steady_state import seconds_per_period
 from verify.quantities.base import evaluate
+from verify.quantities.motor import MotorOptions
 from verify.scene.load import load_scene
 from verify.studies.convergence import Convergence
 from verify.studies.motion import Motion
@@ -203,7 +205,26 @@ def test_motor_figures_equal_the_quantities(run):
     for name, heading in (("stall_force", "stall force"), ("no_load_speed", "no-load speed")):
         expected = evaluate(f"motor.{name}", arguments, scene, cache)
         assert first[heading] == pytest.approx(expected, rel=1e-3)
-    assert column(held, "speed") == pytest.approx([0.0, -0.5 * first["crest speed"], -first["crest speed"]])
+    assert column(held, "speed") == pytest.approx([0.0, 0.5 * first["crest speed"], first["crest speed"]])
+    wave = evaluate("wave.crest_speed", {"model": "analytic"}, scene, cache)
+    assert first["crest speed"] == pytest.approx(wave, rel=0.25)  # at the slider, and of the mean wave in the window
+    assert first["crest speed"] * first["stall force"] > 0.0  # crests drag the slider along
+
+
+def test_a_motor_within_a_time_gives_the_means_so_far_with_their_errors(run):
+    bouncing = ("slider.contact={stiffness=6e4}", "slider.foot=[]", "slider.preload=0.05")
+    scene = load_scene("preloaded-motor", bouncing)
+    least = seconds_per_period(MotorOptions(model="fem", count=49).case(scene)) * (20 + 96 * (QUICK.speeds + 8))
+    with pytest.raises(InputError, match=r"motor\.seconds"):
+        run(scene, replace(QUICK, seconds=0.1 * least))
+    result = run(scene, replace(QUICK, seconds=25.0 * least))
+    still = result.tables[3].records()[0]
+    assert not still["converged"]
+    assert any("motor.seconds" in warning for warning in result.warnings)
+    longer = evaluate(
+        "motor.stall_force", {"model": "fem", "count": 49, "periods": 200_000}, scene, SolutionCache(scene.beam)
+    )
+    assert abs(still["force"] - longer) < 1.5 * still["its error"] < 0.05 * 0.2
 
 
 def test_a_free_run_that_is_too_short_is_not_converged(run, renders):
@@ -221,4 +242,4 @@ def test_the_speed_on_a_standing_wave_is_not_distinguishable_from_zero(run):
     result = run(scene, replace(QUICK, speeds=2, periods=50))
     assert "(not distinguishable from zero), stall force" in result.summary
     row = result.tables[0].records()[0]
-    assert abs(row["free speed"]) < row["its error"] < 1e-3 * row["crest speed"]
+    assert abs(row["free speed"]) < row["its error"] < 1e-3 * abs(row["crest speed"])
