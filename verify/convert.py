@@ -249,6 +249,7 @@ def _spelt_out(part: Any, field: str) -> list[Any]:
     start, end, step = int(span[1]), int(span[2]), int(span[3] or 1)
     if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:
         raise InputError(
-            f"{field} = {shown(part)}: write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5 or 10-50:10"
+            f"{field} = {shown(part)}: write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5, or "
+            "10-50:10 in steps of 10"
         )
     return list(range(start, end + 1, step))

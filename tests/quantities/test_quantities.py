@@ -95,6 +95,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "wave.signed_area_spread": ("driven", {"window": [0.2, 0.5]}), "wave.axis_ratio": ("driven", {"x": 0.31}),
     **{f"wave.{name}": ("driven", {"window": [0.2, 0.5]}) for name in ("best_ratio", "best_ratio_phase")},
     "wave.power_imbalance": ("driven", {}), "wave.best_frequency": ("driven", {"span": 0.1}),
+    "wave.frequency_band": ("driven", {"span": 0.1, "limit": 9.0}),
     **{f"wave.{name}": ("stacks", {}) for name in ("voltage_ratio", "voltage_direction", "pure_voltage_phase")},
     **{f"drive.{name}": ("stacks", {"actuator": 2}) for name in ("power", "current")},
     "drive.force_per_volt": ("stacks", {}),
@@ -147,7 +148,7 @@ def figure(name, remove="", **changed):
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_value_is_finite(name):
     value = figure(name)
-    kind = Bracket if name == "mode.bracket" else complex if isinstance(value, complex) else float
+    kind = Bracket if name in ("mode.bracket", "wave.frequency_band") else complex if isinstance(value, complex) else float
     assert isinstance(value, kind | int)
     assert np.isfinite([value.lower, value.upper] if isinstance(value, Bracket) else [value]).all()
     assert as_text(value)

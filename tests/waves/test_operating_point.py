@@ -16,6 +16,7 @@ from verify.problem.device import Device
 from verify.segment_model import SegmentModel
 from verify.travelling_wave import DrivenCase, best_drive, maximum_crest_speed, measure, middle_half
 from verify.waves.driven_case import unit_waves
+from verify.waves.operating_point import frequency_band
 from verify.waves.two_modes import lumped_swr
 from verify.waves.two_waves import Waveguide
 
@@ -38,6 +39,22 @@ def over(case, frequencies, phases_deg):
     omega = 2 * np.pi * frequencies[:, None]
     sizes = np.sort([abs(plus), abs(minus)], axis=0)
     return sizes[0] / sizes[1], Waveguide(case.beam).crest_speed(omega, waves.k[:, None], plus, minus)
+
+
+@pytest.mark.parametrize(("limit", "second"), [(None, 1.3), (1.6, 1.1), (1.9, 1.3)])
+def test_between_the_ends_of_the_frequency_band_the_wave_is_as_pure_as_asked(titanium_strip, limit, second):
+    case, span = case_of(replace(titanium_strip, loss_factor=0.004), second=second), 0.06
+    case = replace(case, forces=(case.forces[0], replace(case.forces[1], phase_deg=83.0)))
+    low, high = frequency_band(case, limit, span)
+    scan = np.linspace(low - 1.0, high + 1.0, 4001)
+    gammas = over(case, scan, np.array([83.0]))[0][:, 0]
+    ratios, inside = (1.0 + gammas) / (1.0 - gammas), (scan > low) & (scan < high)
+    most = limit or 1.1 * ratios.min()
+    assert ratios[inside].max() == pytest.approx(most, rel=2e-3)
+    assert ratios[[0, -1]].min() > most
+    assert high - low > 1.0
+    with pytest.raises(InputError, match="limit"):
+        frequency_band(case, 1.0 + 0.5 * (ratios.min() - 1.0), span)
 
 
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 60), ("segment", 75)])

@@ -25,7 +25,8 @@ def sweep(scene: str, words: tuple[str, ...], overrides: tuple[str, ...], file: 
     """Evaluate QUANTITY over every combination of the lists; without QUANTITY run the [sweep] of SCENE.
 
     A KEY with a dot is a value of the scene, one without is an argument of the quantities; a value that is a list is in
-    double brackets: window=[[0.1,0.3]].
+    double brackets: window=[[0.1,0.3]]. A range is FIRST-LAST:STEP in the key's unit: 29000-31000:250 is 29000, 29250,
+    ..., 31000; without a step it is 1.
     FILE has JSON lines: a kill or Ctrl-C loses only what is being computed, the same call computes the rest.
     Example: `verify sweep paper mode.frequency_error mode=22 model=segment,fem count=20-100:20 beam.length=0.4,0.5`
     """

@@ -212,7 +212,7 @@ def evaluate(name: str, arguments: Mapping[str, Any], scene: Scene, cache: Solut
 def parse_arguments(name: str, words: Iterable[str]) -> dict[str, Any]:
     """Convert KEY=VALUE arguments of a command line by their types. Raises InputError.
 
-    Lists are 20,40,80 or a range 10-50:10; a relative number may be in per cent.
+    Lists are 20,40,80 or a range 10-50:10 in steps of 10; a relative number may be in per cent.
     """
     chosen = QUANTITIES.named(name)
     arguments: dict[str, Any] = {}

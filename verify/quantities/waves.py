@@ -10,7 +10,7 @@ from verify import settings, travelling_wave
 from verify.actuators.on_beam import ActuatorState
 from verify.actuators.patch import Patch
 from verify.analysis.comparison import asymptotic_order, relative_error
-from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.errors import InputError
 from verify.linear.registry import EXACT, MODELS
 from verify.problem.device import of_impedance
@@ -139,6 +139,15 @@ Span = Annotated[Relative, Meta(gt=0, lt=0.5, description="search range relative
 def best_frequency(scene: Scene, options: WaveOptions, *, span: Span = 0.015) -> float:
     """Drive frequency of least reflection near the scene's drive frequency."""
     return operating_point.best_frequency(driven_case(scene, options), span, options.window)
+
+
+SwrLimit = Annotated[float, Meta(gt=1, description="largest standing-wave ratio; default: 1.1 times the least")]
+
+
+@quantity("wave.frequency_band", unit="Hz", reads=DRIVEN, devices=True)
+def frequency_band(scene: Scene, options: WaveOptions, *, limit: SwrLimit | None = None, span: Span = 0.015) -> Bracket:
+    """Tolerance of the drive frequency: the interval around the best one with a standing-wave ratio up to `limit`."""
+    return Bracket(*operating_point.frequency_band(driven_case(scene, options), limit, span, options.window))
 
 
 def pure_drive(scene: Scene, options: DirectedOptions) -> BestDrive:
