@@ -33,7 +33,7 @@ FRAMES, POINTS = 36, 13
 SURFACE = "#cc3f76"
 WAVES = (
     "SWR: standing-wave ratio in [L/4, 3L/4]. Axis ratio: mean over its whole half wavelengths. Crest speed: of the "
-    "surface at the rms amplitude, against the wave."
+    "surface at the rms amplitude along +x, against the wave: negative for a wave towards +x."
 )
 ENVELOPES = (
     "A pure travelling wave on one section without losses has a flat envelope; ripples are reflection. Near forces and "
