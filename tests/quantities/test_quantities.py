@@ -148,7 +148,9 @@ def figure(name, remove="", **changed):
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_value_is_finite(name):
     value = figure(name)
-    kind = Bracket if name in ("mode.bracket", "wave.frequency_band") else complex if isinstance(value, complex) else float
+    kind = (
+        Bracket if name in ("mode.bracket", "wave.frequency_band") else complex if isinstance(value, complex) else float
+    )
     assert isinstance(value, kind | int)
     assert np.isfinite([value.lower, value.upper] if isinstance(value, Bracket) else [value]).all()
     assert as_text(value)

@@ -103,11 +103,9 @@ def no_load(case: MotorCase, periods: int = PERIODS, known: Sequence[SteadyState
         raise InputError(f"slider.preload = {case.slider.preload!r} N: {REASONS['no load']}")
     root = float(brentq(inside, *bracket, xtol=1e-6 * abs(limit)))
     inside(root)
-    sides = [one for one in ends() if one != root] or bracket
-    slopes = [(states[one].means.force - states[root].means.force) / (one - root) for one in sides if one != root]
-    return replace(
-        states[root], speed=Estimate(root, states[root].errors.force / max(map(abs, slopes), default=np.inf))
-    )
+    low, high = ends()
+    slope = (states[high].means.force - states[low].means.force) / (high - low)
+    return replace(states[root], speed=Estimate(root, states[root].errors.force / abs(slope)))
 
 
 class TimeConstant(Struct, frozen=True, kw_only=True):

@@ -141,11 +141,11 @@ def best_frequency(scene: Scene, options: WaveOptions, *, span: Span = 0.015) ->
     return operating_point.best_frequency(driven_case(scene, options), span, options.window)
 
 
-SwrLimit = Annotated[float, Meta(gt=1, description="largest standing-wave ratio; default: 1.1 times the least")]
+Ratio = Annotated[float, Meta(gt=1, description="largest standing-wave ratio; default: 1.1 times the least")]
 
 
 @quantity("wave.frequency_band", unit="Hz", reads=DRIVEN, devices=True)
-def frequency_band(scene: Scene, options: WaveOptions, *, limit: SwrLimit | None = None, span: Span = 0.015) -> Bracket:
+def frequency_band(scene: Scene, options: WaveOptions, *, limit: Ratio | None = None, span: Span = 0.015) -> Bracket:
     """Tolerance of the drive frequency: the interval around the best one with a standing-wave ratio up to `limit`."""
     return Bracket(*operating_point.frequency_band(driven_case(scene, options), limit, span, options.window))
 

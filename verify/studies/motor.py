@@ -56,9 +56,9 @@ class Allowance:
     """Drive periods for the figures of one model."""
 
     per_period: float
-    """Processor time of a period, s."""
+    """Processor time, s."""
     left: float
-    """Periods of the steady states to come, and their number; `free` are those of up to three free runs."""
+    """Of the steady states to come, whose number is `figures`; `free` are those of each of up to three free runs."""
     figures: int
     free: int
 
@@ -246,11 +246,10 @@ def _convergence(field: Field) -> list[Margin]:
         so_far = f"{with_error(still.means.force, still.errors.force, '+')} N"
         found.append(
             Margin(
-                name="error of the stall force",
+                name=f"interval of the stall force {so_far}",
                 size=still.errors.force / (abs(still.means.force) or still.errors.force),
                 where=f"after {still.periods} drive periods ({field.name})",
                 condition=f"the stall force may be its mean so far, {so_far}",
-                failure=f"after {still.periods} drive periods the stall force is known to {so_far} ({field.name})",
                 remedy=field.longer or "a motion of one kind has a closer mean: change slider.preload or frequency_hz",
                 harm="discretisation",
             )

@@ -14,8 +14,8 @@ SEARCH_SPAN = 0.015
 """Half width of the frequency search, relative to the drive's frequency."""
 PHASES_DEG = (5.0, 175.0)
 """Range of the search in |phase| between the two forces, degrees."""
-EXCESS = 1.1
-"""Standing-wave ratio at the ends of a band, over the least: an envelope that varies by 10 % more."""
+EXCESS, POINTS = 1.1, 801
+"""Of a band: standing-wave ratio at its ends over the least, number of frequencies between which it is interpolated."""
 ROUNDING = 1e-13
 """Excess of a reflection over its limit that is rounding."""
 _ZOOM, _LEVELS, _SHARP = 17, 13, 1e-12
@@ -40,9 +40,8 @@ def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window |
 
     Raises InputError for a minimum at the edge of the search, and for a standing wave at all frequencies.
     """
-    least = minimum_near(
-        lambda at: _reflection(case, at, window), np.linspace(1.0 - span, 1.0 + span, 41) * case.frequency_hz, 1e-5
-    )
+    grid = np.linspace(1.0 - span, 1.0 + span, 41) * case.frequency_hz
+    least = minimum_near(lambda at: _reflection(case, at, window), grid, 1e-5)
     if least.value > 1.0 - 1e-6:
         low, high = ((1.0 + side * span) * case.frequency_hz for side in (-1, 1))
         raise InputError(
@@ -72,33 +71,24 @@ def _reflection(case: DrivenCase, at: Array, window: Window | None) -> Array:
 def frequency_band(
     case: DrivenCase, limit: float | None = None, span: float = SEARCH_SPAN, window: Window | None = None
 ) -> tuple[float, float]:
-    """Frequencies around the best between which the standing-wave ratio is at most `limit`, Hz, to 1e-6 Hz.
+    """Frequencies around the best between which the standing-wave ratio is at most `limit`, Hz.
 
-    Default: 1.1 times the least ratio. Raises what `best_frequency` raises, and InputError where the least ratio is
-    above the limit and for an end beyond the search.
+    Default: 1.1 times the least. Raises InputError as `best_frequency`, and for a limit that the wave does not cross.
     """
-    from scipy.optimize import brentq
-
     best = best_frequency(case, span, window)
-    least = float(_reflection(case, np.array([best]), window)[0])
-    ratio = (1.0 + least) / (1.0 - least)
+    at = best + span * case.frequency_hz * np.linspace(-1.0, 1.0, POINTS)
+    gammas, middle = _reflection(case, at, window), POINTS // 2
+    ratio = (1.0 + gammas[middle]) / (1.0 - gammas[middle])
     most = EXCESS * ratio if limit is None else limit
     level = (most - 1.0) / (most + 1.0)
-    if level <= least + ROUNDING:
-        raise InputError(f"limit = {limit!r}: the least standing-wave ratio is {ratio:.5g}, at {best:.7g} Hz, raise it")
-    ends = []
-    for side in (-1.0, 1.0):
-        at = best + side * span * case.frequency_hz * np.linspace(0.0, 1.0, 101)
-        beyond = np.flatnonzero(_reflection(case, at[1:], window) > level)
-        if not len(beyond):
-            raise InputError(
-                f"span = {span!r}: the standing-wave ratio is below {most:.4g} at {at[-1]:.6g} Hz, widen it"
-            )
-        inner, outer = (float(end) for end in at[beyond[0] : beyond[0] + 2])
-        ends.append(
-            float(brentq(lambda f: _reflection(case, np.array([f]), window)[0] - level, inner, outer, xtol=1e-6))
-        )
-    return ends[0], ends[1]
+    below, above = (np.flatnonzero(side > level) for side in (gammas[middle::-1], gammas[middle:]))
+    if level <= gammas[middle] or not len(below) or not len(above):
+        least = f"the least standing-wave ratio is {ratio:.5g}, raise it"
+        reason = least if most <= ratio else f"no ratio within span = {span!r} is above, lower it or raise span"
+        raise InputError(f"limit = {most:.5g}: {reason}")
+    i, j = middle - int(below[0]), middle + int(above[0])
+    low, high = (np.interp(level, gammas[rows], at[rows]) for rows in ([i + 1, i], [j - 1, j]))
+    return float(low), float(high)
 
 
 def check_two(case: DrivenCase) -> None:
