@@ -104,8 +104,8 @@ def no_load(case: MotorCase, periods: int = PERIODS, known: Sequence[SteadyState
     root = float(brentq(inside, *bracket, xtol=1e-6 * abs(limit)))
     inside(root)
     low, high = ends()
-    slope = (states[high].means.force - states[low].means.force) / (high - low)
-    return replace(states[root], speed=Estimate(root, states[root].errors.force / abs(slope)))
+    rise = abs(states[high].means.force - states[low].means.force)
+    return replace(states[root], speed=Estimate(root, states[root].errors.force * abs(high - low) / (rise or np.inf)))
 
 
 class TimeConstant(Struct, frozen=True, kw_only=True):
