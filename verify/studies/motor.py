@@ -231,7 +231,11 @@ def _unsettled(curve: "list[SteadyState]", longer: str) -> list[str]:
     figures = ", ".join(dict.fromkeys(figure for at in off for figure in at.not_converged))
     periods = max((at.periods for at in off), default=0)
     what = f"{figures} not converged at {len(off)} of {len(curve)} speeds after {periods} drive periods"
-    return [", ".join(filter(None, (what, "the tables give means so far with errors", longer)))] * bool(off)
+    return [
+        ", ".join(
+            filter(None, (what, "the tables give means so far, which hold while the motion keeps its kind", longer))
+        )
+    ] * bool(off)
 
 
 def _convergence(field: Field) -> list[Margin]:
