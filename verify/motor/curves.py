@@ -20,7 +20,6 @@ from verify.estimate import Estimate
 from verify.formatting import one_line, with_error, with_unit
 from verify.motor.steady_state import (
     BATCHES,
-    NO_POWER,
     PERIODS,
     UNCONVERGED,
     MotorCase,
@@ -45,8 +44,6 @@ OVERSHOOT = 0.05
 `STEADY`. The mean force at one place depends on the speed alone, dv/dt = F(v)/m, and such an approach is monotone."""
 Missing = Literal["start", "overshoot", "resolution"]
 REASONS: dict[str, str] = {
-    **UNCONVERGED,
-    "efficiency": NO_POWER,
     "no load": "mean friction has one sign at all speeds up to twice the crest speed, raise slider.preload",
     "free speed": "the free run has not reached a steady state, raise periods or slider.preload, or lower the "
     "standing-wave ratio along which the slider moves",
@@ -94,7 +91,7 @@ def no_load(case: MotorCase, periods: int = PERIODS, known: Sequence[SteadyState
         if not state.converged("force") and state.errors.force >= enough * abs(value):
             low, high = sorted(ends())
             between = f"no-load speed so far: {with_unit(low, 'm/s')} to {with_unit(high, 'm/s')}"
-            raise InputError(f"periods = {periods!r}: {REASONS['force']} ({between})")
+            raise InputError(f"periods = {periods!r}: {UNCONVERGED['force']} ({between})")
         return value
 
     limit = float(np.copysign(2.0 * crest_speed(case), still.means.force))

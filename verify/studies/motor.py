@@ -229,13 +229,9 @@ def _unsettled(curve: "list[SteadyState]", longer: str) -> list[str]:
     """A warning on means that have not converged; none where all have."""
     off = [at for at in curve if not at.converged()]
     figures = ", ".join(dict.fromkeys(figure for at in off for figure in at.not_converged))
-    periods = max((at.periods for at in off), default=0)
-    what = f"{figures} not converged at {len(off)} of {len(curve)} speeds after {periods} drive periods"
-    return [
-        ", ".join(
-            filter(None, (what, "the tables give means so far, which hold while the motion keeps its kind", longer))
-        )
-    ] * bool(off)
+    at = f"at {len(off)} of {len(curve)} speeds after {max(at.periods for at in curve)} drive periods"
+    so_far = "the tables give means so far, which hold while the motion keeps its kind"
+    return [", ".join(filter(None, (f"{figures} not converged {at}", so_far, longer)))] * bool(off)
 
 
 def _convergence(field: Field) -> list[Margin]:
