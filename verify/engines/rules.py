@@ -218,13 +218,13 @@ def _rule(k: Array, bases: list[Array], support: str, weld: Array, alike: float 
     others: Any = {ADAPTED: HELD, SERIES: weld}
     rows = [np.array(others[name] if name in others else WALLS[name].weights) for name in names]
     fits = [(k * base * np.append(row, np.ones(len(k)))[: len(k)])[k > 0.0] for base in bases for row in rows]
-    spreads = [round(float(fit.std() / fit.mean()), 6) for fit in fits]
+    spreads = [round(float(np.std(fit / fit.mean())), 6) for fit in fits]
     best = int(np.argmin(spreads))
     name, spacing, stiffness = names[best % len(names)], best // len(names), float(np.median(fits[best]))
     text = wall_label(name) if name in WALLS else name
     if spreads[best] > alike:
         inner = (k * bases[0])[1:]
         spacing, stiffness, text = 0, float(np.median(inner)), IRREGULAR
-        if inner.std() < alike * stiffness:
+        if np.std(inner / stiffness) < alike:
             text = f"{k[0] * bases[0][0] / stiffness:.4g} EI/l at the wall"
     return text, spacing, stiffness

@@ -101,7 +101,7 @@ def _mesh(path: Path, source: str) -> tuple[Array, dict[str, Array], dict[str, A
 
     output = io.StringIO()
     try:
-        with redirect_stdout(output), redirect_stderr(output):
+        with redirect_stdout(output), redirect_stderr(output), np.errstate(all="ignore"):
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # readers of many formats raise many types
         printed = output.getvalue() if isinstance(error, SystemExit) else str(error)
