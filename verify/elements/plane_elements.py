@@ -37,14 +37,14 @@ UNIT = np.eye(2)
 
 
 class Forces(NamedTuple):
-    """Dead loads on the beam, in the frame of the ground."""
+    """Loads along and across the straight beam; in `large_motion` along x and y of the ground."""
 
     tip: Array = np.zeros(2)
-    """(2,), N, on the right end."""
+    """(2,), N, dead, on the right end."""
     moment: float = 0.0
     """N m, on the right end."""
     follower: Array = np.zeros(2)
-    """(2,), N, on the right end, along and across it."""
+    """(2,), N, on the right end, along its tangent and normal."""
     gravity: Array = np.zeros(2)
     """(2,), m/s^2."""
 
