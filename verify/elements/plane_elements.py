@@ -243,7 +243,7 @@ class PlaneElements:
         """Generalised forces of the elements (n, 8), and their derivatives by the state, (n, 8, 8)."""
         vectors, matrices = self._weights @ forces.gravity, np.zeros((self.count, 8, 8))
         vectors[-1, 4:6] += forces.tip
-        if not (forces.moment or forces.follower.any()):
+        if not (forces.moment or np.any(forces.follower)):
             return vectors, matrices
         a = state[-1, 1]
         square, turned = float(a @ a), QUARTER @ a
