@@ -66,10 +66,14 @@ def tabulated(times: Sequence[float] | Array, values: Sequence[float] | Array) -
 
 @dataclass(frozen=True, kw_only=True)
 class Base:
-    """Prescribed motion of the base; the beam starts at `hub_radius` from the axis of its rotation, m."""
+    """Prescribed motion of the base; the beam starts at `hub_radius` from the axis of its rotation.
+
+    A motion is a function of the time, s, that returns value, rate and acceleration: `polynomial`, `tabulated`, your
+    own. Raises InputError for a negative radius.
+    """
 
     rotation: Prescribed = still
-    """Angle, rad, rate, acceleration."""
+    """Angle, rad."""
     x: Prescribed = still
     """Coordinate of the axis along the beam at angle 0, m."""
     y: Prescribed = still
