@@ -64,7 +64,7 @@ def test_a_slow_turn_bends_it_as_its_inertia_bends_a_cantilever_at_rest(model):
     assert measured(bent, "root_moment", model=model) == pytest.approx(moment, rel=0.02)
 
 
-@pytest.mark.parametrize(("model", "within"), [("segment", 1e-7), ("fem", 1e-4)])  # elements swing as they stretch
+@pytest.mark.parametrize(("model", "within"), [("segment", 1e-7), ("fem", 1e-6)])
 def test_in_steady_rotation_it_stays_straight(model, within):
     turns = scene("rotation = [0.3, 1.7]", "hub_radius = 0.2")
     figures = [measured(turns, name, model=model) for name in ("lag", "lead", "tip_x", "tip_y")]

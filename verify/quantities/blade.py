@@ -60,13 +60,12 @@ class TipPath:
 
     @property
     def moved(self) -> float:
-        """Largest distance of the tip from its start, m."""
-        return float(np.linalg.norm(self.tip - self.tip[0], axis=1).max())
+        """Largest distance of the tip from its start, m, at least 1 % of the length."""
+        return max(float(np.linalg.norm(self.tip - self.tip[0], axis=1).max()), 0.01 * float(self.tip[0, 0]))
 
     def distance(self, other: "TipPath") -> float:
         """Largest distance of the two tips at a time, over that which the other one moves."""
-        apart = float(np.linalg.norm(self.tip - other.tip, axis=1).max())
-        return apart / other.moved if other.moved else float(apart > 0.0)
+        return float(np.linalg.norm(self.tip - other.tip, axis=1).max()) / other.moved
 
     def largest(self, sign: float) -> tuple[float, float]:
         """Largest deflection of the tip towards +y or -y, m, and its time, s, between the samples; 0 for rounding."""
@@ -117,7 +116,10 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     from verify.elements.plane_elements import Forces
 
     model, weight = elements(beam, count, path.axial_stiffness), Forces(gravity=np.array(base.gravity))
-    run = large_motion(model, times, forces=weight, base=base.motion, tolerance=path.tolerance)
+    rate, start = base.motion.rotation(0.0)[1], model.straight
+    if rate and beam.supports[0] == "clamped":  # else the beam rings along its length
+        start = model.bend(rate=rate, hub_radius=base.hub_radius).state
+    run = large_motion(model, times, forces=weight, base=base.motion, start=start, tolerance=path.tolerance)
     (r0, a0), (r1, a1) = np.moveaxis(run.states[:, :2], 0, -2)
     size = float(model.nodes[1])
     bend = 6.0 * (r1 - r0) / size**2 - (4.0 * a0 + 2.0 * a1) / size  # r'' of the cubic at its left end

@@ -24,9 +24,9 @@ COLUMNS += [si("root moment", "N m"), percent("path off", ".2g")]
 CAPTION = "In the frame of the base: lead towards +y, lag towards -y."
 NOTES = [
     "In the frame of the base: x along the straight beam, y across it, lead towards +y, lag towards -y. Path off: "
-    "largest distance of the tip from that of the most elements, over the largest motion of the tip; fewer links and "
-    "elements with ten times the tolerance. Planar, undamped, without shear and rotary inertia of the section; links "
-    "do not stretch.",
+    "largest distance of the tip from that of the most elements, over the largest motion of the tip or 1 % of the "
+    "length; fewer links and elements with ten times the tolerance. Planar, undamped, without shear and rotary inertia "
+    "of the section; links do not stretch.",
     "Linear models, their modes and waves are those of a base at rest: they do not apply to this motion.",
 ]
 TITLES = {"segment": "links", "fem": "nonlinear elements"}
@@ -71,7 +71,7 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             f"difference of {2 * self.links} links and {2 * self.elements} elements": between,
             f"numbers and steps of {self.elements} and {2 * self.elements} elements": fewer.distance(best),
         }
-        remedy = "give more large-motion.links and .elements, or a smaller .tolerance"
+        remedy = "give more large-motion.links and .elements, or a smaller .tolerance; links never stretch"
         margins = [Margin(name=name, size=size, harm="discretisation", remedy=remedy) for name, size in sources.items()]
         size, at = max(best.largest(-1.0), best.largest(1.0))
         stated = f"Largest deflection of the tip {with_unit(size)} at {at:.4g} s, ± {with_unit(between * best.moved)}"
