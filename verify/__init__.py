@@ -20,6 +20,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   compare_frequencies, judge_file                              a list of another program; a file of rigid bodies
   verdict                                                      how far a model can be trusted at a mode or a drive
   NonlinearHermite, BentElements, large_motion, NonlinearMotion    nonlinear elements: statics, rotation, time
+  Base, polynomial, tabulated, Forces                          their prescribed base and loads
   load_scene, run_scene                                        a scene file, its gates and studies
   InputError                                                   invalid input, in one sentence
 

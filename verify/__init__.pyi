@@ -30,11 +30,15 @@ from verify.elements.nonlinear import BentElements as BentElements
 from verify.elements.nonlinear import NonlinearHermite as NonlinearHermite
 from verify.elements.nonlinear_motion import NonlinearMotion as NonlinearMotion
 from verify.elements.nonlinear_motion import large_motion as large_motion
+from verify.elements.plane_elements import Forces as Forces
 from verify.engines.judgement import judge_file as judge_file
 from verify.errors import InputError as InputError
 from verify.fem_beam import HermiteModel as HermiteModel
 from verify.linear.field import HarmonicField as HarmonicField
 from verify.linear.modes import Modes as Modes
+from verify.problem.base_motion import Base as Base
+from verify.problem.base_motion import polynomial as polynomial
+from verify.problem.base_motion import tabulated as tabulated
 from verify.problem.beam import Beam as Beam
 from verify.problem.beam import PointForce as PointForce
 from verify.problem.beam import PointMoment as PointMoment

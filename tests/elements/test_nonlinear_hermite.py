@@ -17,6 +17,7 @@ from verify import (
     Keep,
     NonlinearHermite,
     PointForce,
+    bend,
     large_motion,
     simulate,
 )
@@ -24,7 +25,8 @@ from verify.analysis.comparison import observed_order
 from verify.cases.table import CASES
 from verify.chain import motion
 from verify.chain.kinematics import at_rest
-from verify.chain.system import build_system
+from verify.chain.linearisation import linearise
+from verify.chain.system import ChainState, LinkLoad, build_system
 from verify.elements.plane_elements import Forces
 from verify.problem.base_motion import Base, polynomial, tabulated
 
@@ -138,6 +140,23 @@ def spin_up(t, speed=6.0, end=15.0):
     w = 2.0 * pi / end
     angle = speed / end * (0.5 * t * t + (cos(w * t) - 1.0) / w**2)
     return angle, speed / end * (t - sin(w * t) / w), speed / end * (1.0 - cos(w * t))
+
+
+def test_a_rotating_beam_stretches_as_by_the_closed_form_however_short_its_elements_are():
+    errors = [NonlinearHermite(SPUN, n, axial_stiffness=2.8e7).bend(rate=6.0).tip[0] - 10.0 for n in (4, 8, 64)]
+    errors = [extension / 5.1431745504e-4 - 1.0 for extension in errors]
+    assert 2e-4 < errors[0] < 5e-4
+    assert 3e-6 < errors[1] < 1e-5
+    assert abs(errors[2]) < 1e-8  # rounding; without a share of EA it is 2e-3
+
+
+def test_under_a_moment_its_frequencies_are_those_of_the_chain_and_a_follower_force_is_refused():
+    chain = replace(build_system(CANTILEVER, 40), loads=(LinkLoad(link=40, at=L / 40, moment=0.3),))
+    angles = np.diff(bend(CANTILEVER, 40, moment=0.3).angles, prepend=0.0)
+    links = linearise(chain, ChainState(angles, np.zeros(40))).frequencies()[:3] / (2.0 * pi)
+    assert elements(16).bend(moment=0.3).frequencies_hz()[:3] == pytest.approx(links, rel=2e-4)
+    with pytest.raises(InputError, match="follower"):
+        elements(4).bend(follower=0.3).frequencies_hz()
 
 
 def test_a_beam_that_is_spun_up_lags_as_published_and_ends_with_its_steady_extension():

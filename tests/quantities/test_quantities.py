@@ -23,7 +23,7 @@ from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
 from verify.problem.slider import Contact, Slider
 from verify.quantities import QUANTITIES, evaluate, parse_arguments
-from verify.scene.model import Drive, Scene, SceneDevice, SceneForce
+from verify.scene.model import Drive, MovingBase, Scene, SceneDevice, SceneForce
 from verify.segment_model import SegmentModel
 from verify.studies.identify import Identify, Synthetic
 from verify.studies.motion import Motion
@@ -71,6 +71,11 @@ SCENES = {
     "stack": scene_of(STRIP, actuator=TRANSDUCER),
     "actuated": scene_of(STRIP, actuator=Stack(layers=20, layer_thickness=5e-4, area=25e-6)),
     "patched": scene_of(STRIP, actuator=Patch(length=0.02, thickness=2e-4)),
+    "turned": Scene(
+        name="turned",
+        beam=replace(STRIP, supports=("clamped", "free")),
+        base=MovingBase(duration=0.11, rotation=(0.0, 0.0, 3.1), hub_radius=0.07),
+    ),
     "decay": Scene(name="decay", beam=STRIP, slider=RIDER, studies={"identify": DECAY}),
 }
 SEGMENT, FEM = {"model": "segment", "count": 9}, {"model": "fem", "count": 9}
@@ -129,6 +134,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "actuator.impedance": ("stack", {"frequency_hz": 7e4}),
     "identify.interval": ("decay", {"parameter": "slope"}),
     "identify.coverage": ("decay", {"parameter": "mu", "repeats": 100}),
+    **{f"blade.{n}": ("turned", {"count": 5}) for n in ("lag", "lead", "tip_x", "tip_y", "root_moment", "extension")},
+    **{f"blade.{name}": ("turned", {**SEGMENT, "mode": 2}) for name in ("lead_lag", "flap")},
     "case.value": ("bare", {"case": "landing"}), "case.error": ("bare", {"case": "elastica-shortening", "count": 9}),
     "case.order": ("bare", {"case": "elastica-deflection", "counts": [8, 16, 32]}),
     "contact.restitution": ("bare", {"damping_ratio": 0.2}),

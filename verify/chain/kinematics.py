@@ -55,7 +55,7 @@ def project(system: ChainSystem, state: ChainState) -> ChainState:
 
 
 def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
-    """A state at rest with `angles` (default: straight), projected onto the roller."""
+    """A state at rest relative to the hub with `angles` (default: straight), projected onto the roller."""
     still = np.zeros(system.n_links)
     return project(system, ChainState(still if angles is None else angles, still))
 

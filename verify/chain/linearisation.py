@@ -93,7 +93,7 @@ def tensioned(system: ChainSystem, wall: Wall = DEFAULT.wall) -> ChainSystem:
     other side. Raises InputError where no axial force acts or a joint keeps no stiffness.
     """
     middles = 0.5 * (system.nodes[1:] + system.nodes[:-1])
-    pull = system.masses * (middles * system.hub_rate**2 + system.gravity[0])
+    pull = system.masses * ((system.base.hub_radius + middles) * system.hub_rate**2 + system.gravity[0])
     if not pull.any():
         raise InputError("chain.hub_rate = 0.0 and no gravity along the chain: no axial force softens a joint")
     tension = np.cumsum(pull[::-1])[::-1]

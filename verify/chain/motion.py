@@ -50,7 +50,7 @@ class ChainMotion(ABC):
 
     @abstractmethod
     def joints(self) -> Array:
-        """Positions of joints 0..N, (n, N + 1, 2), m."""
+        """Positions of joints 0..N from joint 0 of the straight chain, (n, N + 1, 2), m."""
 
     @abstractmethod
     def directions(self) -> Array:
@@ -94,7 +94,7 @@ class RigidMotion(ChainMotion):
         return ChainState(self.angles[index], self.rates[index], float(self.times[index]))
 
     def energies(self) -> Array:
-        """Kinetic, elastic and gravitational energy, (3, n), J."""
+        """Kinetic, elastic and gravitational energy, (3, n), J, of the motion relative to the hub's joint."""
         return energies(self.system, self.times, self.angles, self.rates)
 
     def residual(self) -> Array:
@@ -111,7 +111,7 @@ class RigidMotion(ChainMotion):
         return place(self.system, self.times, self.angles, self.rates).joints
 
     def in_base(self) -> Array:
-        """Positions of joints 0..N in the frame of the hub, (n, N + 1, 2), m."""
+        """Positions of joints 0..N from joint 0 along and across the hub's direction, (n, N + 1, 2), m."""
         angle = self.system.hub(self.times)[0]
         c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
         x, y = np.moveaxis(self.joints(), -1, 0)

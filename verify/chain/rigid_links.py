@@ -16,7 +16,7 @@ from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION, Model
 from verify.chain.system import ChainState, ChainSystem, circular
 from verify.jit import FAST, inline, jit
-from verify.problem.base_motion import FIXED, KNOTS
+from verify.problem.base_motion import FIXED
 
 HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(9)
 """Columns of `links`, (N, 9): half length, mass for x and y, inertia J + h^2 m_y about an end, (m_x - m_y)/4, joint,
@@ -195,7 +195,8 @@ def flatten(system: ChainSystem, end: float = 0.0) -> Model:
         base, piece = np.zeros((1, 14)), np.inf
         base[0, 1] = system.hub_rate
     else:
-        base, piece = system.base.table(end), end / KNOTS
+        base = system.base.table(end)
+        piece = end / len(base)
     radius = system.base.hub_radius
     numbers = (piece, system.tip == "roller", system.axial_spring, 0.0, system.length, radius)
     return Model(

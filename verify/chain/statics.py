@@ -18,7 +18,6 @@ from verify.chain.system import ChainState, ChainSystem, LinkLoad, build_system
 from verify.errors import InputError, shown
 from verify.formatting import one_line
 from verify.linear.positions import Numbers, as_vector
-from verify.problem.base_motion import FIXED
 from verify.problem.beam import Beam
 from verify.settings import DEFAULT, Joints, Wall
 from verify.validation import check_integer, check_number
@@ -63,7 +62,7 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
 
     The frame rotates with a steadily rotating hub. Raises InputError for loads and supports that do not.
     """
-    if system.base is not FIXED:
+    if system.base.moves:
         raise InputError("chain.base: an equilibrium has a base at rest or a steady hub_rate, give one of the two")
     lengths, n_closures = system.lengths, int(system.tip == "roller")
     theta = np.cumsum(angles)
@@ -76,6 +75,14 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
             forces[load.link - 1] += force[:2]
             arms[load.link - 1] += load.at * force[:2]
             moments[load.link - 1] += force[2]
+    if system.hub_rate:
+        if n_closures or forces.any() or not system.axial_inertia:
+            raise InputError(
+                f"chain.hub_rate = {system.hub_rate!r}: a roller, gravity, dead forces and links without axial "
+                "inertia do not rotate with the hub, no equilibrium exists; leave them out or give 0"
+            )
+        centrifugal = system.hub_rate**2 * system.base.hub_radius * system.masses  # that of the radius alone
+        forces[:, 0], arms[:, 0] = centrifugal, 0.5 * lengths * centrifugal
     outboard = np.cumsum(forces[::-1], axis=0)[::-1] - forces
     along, across = (lengths[:, None] * outboard + arms).T
     spring = system.axial_spring * float(lengths @ (c - 1.0))
@@ -83,11 +90,6 @@ def potential(system: ChainSystem, angles: Array, factor: float = 1.0) -> Potent
     if system.axial_spring:
         full = system.axial_spring * np.outer(lengths * s, lengths * s)
     if system.hub_rate:
-        if n_closures or outboard.any() or arms.any() or not system.axial_inertia:
-            raise InputError(
-                f"chain.hub_rate = {system.hub_rate!r}: a roller, gravity, dead forces and links without axial "
-                "inertia do not rotate with the hub, no equilibrium exists; leave them out or give 0"
-            )
         products, difference = system.hub_rate**2 * inertia_products(system), np.subtract.outer(theta, theta)
         gradient += (products * np.sin(difference)).sum(axis=1)
         full = -products * np.cos(difference)

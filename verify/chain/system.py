@@ -51,7 +51,7 @@ class ChainSystem:
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2
     hub_rate: float = 0.0  # steady angular velocity of the hub, rad/s, whose angle at time 0 is 0
     base: Base = FIXED
-    """Prescribed motion of the hub in time, in place of `hub_rate`; for rigid links with a free tip."""
+    """Prescribed motion of the hub, for rigid links with a free tip; beside `hub_rate` its radius alone."""
     loads: tuple[LinkLoad, ...] = ()
 
     @property

@@ -13,7 +13,7 @@ from verify.studies.base import STUDIES
 
 IN_TIME = {"drive", "slider", "motion"}
 READS: dict[str, set[str]] = {"spectrum": set(), "convergence": set(), "wave": {"drive"}}
-READS |= {"motion": IN_TIME, "motor": IN_TIME, "control": IN_TIME}
+READS |= {"large-motion": {"base", "drive"}, "motion": IN_TIME, "motor": IN_TIME, "control": IN_TIME}
 """Tables of a scene that a study reads besides the beam and its own section; other studies may read any."""
 
 

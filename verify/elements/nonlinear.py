@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, cholesky_banded, eigh, eigvalsh, solve_triangular
 
 from verify.arrays import Array, ComplexArray
-from verify.elements.plane_elements import BAND, QUARTER, Forces, PlaneElements
+from verify.elements.plane_elements import BAND, NONE, QUARTER, Forces, PlaneElements
 from verify.errors import InputError, shown
 from verify.linear.field import phasor
 from verify.linear.positions import Numbers, as_vector
@@ -42,7 +42,8 @@ class NonlinearHermite(PlaneElements):
         """Equilibrium under a dead `load` (N), a `moment` (N m) and a `follower` force (N) at the right end.
 
         Forces and `gravity` (m/s^2) are one number across the beam, or two, along and across; the follower's are those
-        of the tip's tangent and normal. The base turns steadily at `rate`, rad/s, `hub_radius` (m) beyond the axis.
+        of the tip's tangent and normal. The base turns steadily at `rate`, rad/s, `hub_radius` (m) beyond the axis, and
+        the loads turn with it.
         Newton's method in load steps from the straight beam, a quarter as long where it fails and twice as long where
         it does not; from `start` in one step. Raises InputError where steps of a millionth of the load fail.
         """
@@ -59,7 +60,7 @@ class NonlinearHermite(PlaneElements):
                 raise InputError(
                     f"load: no stable equilibrium beyond {done:.3g} of it, reduce it or add a small force across"
                 )
-        return BentElements(model=self, state=state, rate=rate)
+        return BentElements(model=self, state=state, rate=rate, forces=forces)
 
     def weights(self, s: float) -> Array:
         """Weights (count + 1, 2) of the nodes' values and slopes in a coordinate at `s`. Raises InputError."""
@@ -107,11 +108,14 @@ class NonlinearHermite(PlaneElements):
             return False
         return True
 
-    def frequencies_hz(self, state: Array, rate: float, flapping: bool) -> Array:
+    def frequencies_hz(self, state: Array, rate: float, forces: Forces, flapping: bool) -> Array:
         """See `BentElements.frequencies_hz`."""
+        if forces.follower.any():
+            raise InputError(f"follower = {shown(forces.follower)}: its stiffness is not symmetric, give a dead load")
         free = np.flatnonzero(self.free.ravel())
         stiffness, mass = (
-            dense(self.band(matrices))[np.ix_(free, free)] for matrices in (self.elastic(state)[1], self.element_masses)
+            dense(self.band(matrices))[np.ix_(free, free)]
+            for matrices in (self.elastic(state)[1] - self.loads(forces, state)[1], self.element_masses)
         )
         if flapping:
             if abs(state[:, 0, 1]).max() > 1e-9 * self.beam.length:
@@ -151,6 +155,8 @@ class BentElements:
     """(count + 1, 2, 2): of a node r = (x, y), m, then r'."""
     rate: float = 0.0
     """Of the base, rad/s."""
+    forces: Forces = NONE
+    """Along and across the straight beam."""
 
     @property
     def tip(self) -> Array:
@@ -183,9 +189,9 @@ class BentElements:
         In the plane, with the gyroscopic term of the base's rotation (lead-lag); with `flapping` across the plane, of a
         straight beam whose EI is the same there. Those in the plane include axial modes and, above 2 sqrt(EI/rho A)/l^2
         rad/s (about mode 0.45 `count`), modes of the slopes x' that the two points of EA leave soft, which no beam has.
-        Raises InputError for an unstable equilibrium.
+        Raises InputError for an unstable equilibrium, and under a follower force.
         """
-        return self.model.frequencies_hz(self.state, self.rate, flapping)
+        return self.model.frequencies_hz(self.state, self.rate, self.forces, flapping)
 
     def __repr__(self) -> str:
         x, y = self.tip

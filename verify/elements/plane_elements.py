@@ -8,8 +8,9 @@ straight beam. With the stretch J = |r'| and the curvature kappa = theta' = (r' 
 without shear and rotary inertia (J. C. Simo and L. Vu-Quoc, Comput. Methods Appl. Mech. Engrg. 58 (1986) 79, in that
 limit). Bending is integrated at four points of Gauss. A cubic cannot bend without stretching, which full integration of
 EA resists (membrane locking); two points leave a mechanism of the slopes, that a hundredth of EA would restrain at the
-cost of accuracy: a tenth of EI/l^2 at the four points does it and vanishes with the element. The mass matrix is
-constant, and the tangent of the straight beam across its length is the matrix of `fem_beam`.
+cost of accuracy: of EA a tenth of EI/l^2 is integrated at the four points, the rest at the two, so that a uniform
+stretch has EA. The mass matrix is constant, and the tangent of the straight beam across its length is the matrix of
+`fem_beam`.
 
 The beam moves relative to a base with prescribed motion: unknowns are coordinates in the base's frame, so that a clamp
 fixes y' alone and leaves the stretch x' free; the base acts by inertia forces.
@@ -30,21 +31,21 @@ from verify.problem.supports import FIXED
 from verify.validation import check_integer, check_number
 
 BAND = 7  # an element couples two nodes of four values
-RESTRAINT = 0.1  # stiffness of the stretch at four points, in EI/l^2: its error is far below that of bending
+RESTRAINT = 0.1  # part of EA at four points, in EI/l^2: its error is far below that of bending
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 """Rotation by 90 degrees."""
 UNIT = np.eye(2)
 
 
 class Forces(NamedTuple):
-    """Dead loads on the beam, in the frame of the ground."""
+    """Loads along and across the straight beam; in `large_motion` along x and y of the ground."""
 
     tip: Array = np.zeros(2)
-    """(2,), N, on the right end."""
+    """(2,), N, dead, on the right end."""
     moment: float = 0.0
     """N m, on the right end."""
     follower: Array = np.zeros(2)
-    """(2,), N, on the right end, along and across it."""
+    """(2,), N, on the right end, along its tangent and normal."""
     gravity: Array = np.zeros(2)
     """(2,), m/s^2."""
 
@@ -112,6 +113,7 @@ class PlaneElements:
         full = line_basis(self.nodes, shear=False)
         rows, axial, bending = [], [], []
         ei, ea = self.parts.of("bending_stiffness"), self._axial
+        restraint = np.minimum(RESTRAINT * ei / np.diff(self.nodes) ** 2, ea)
         for basis in (full, CellBasis(full.mesh, full.elem, intorder=3)):
             slopes, bends = (np.stack([w[k].grad[0] for w in basis.basis[:4]], axis=-1) for k in (0, 1))
             table = np.zeros((*slopes.shape[:2], 4, 4, 2))
@@ -119,7 +121,7 @@ class PlaneElements:
                 table[:, :, axis, :, axis], table[:, :, 2 + axis, :, axis] = slopes, bends
             rows.append(table.reshape(*slopes.shape[:2], 4, 8))
             two = basis is not full
-            stretch = ea if two else RESTRAINT * ei / np.diff(self.nodes) ** 2
+            stretch = ea - restraint if two else restraint
             axial.append(stretch[:, None] * basis.dx)
             bending.append((0.0 if two else 1.0) * ei[:, None] * basis.dx)
         return np.concatenate(rows, 1), np.concatenate(axial, 1), np.concatenate(bending, 1)
@@ -241,7 +243,7 @@ class PlaneElements:
         """Generalised forces of the elements (n, 8), and their derivatives by the state, (n, 8, 8)."""
         vectors, matrices = self._weights @ forces.gravity, np.zeros((self.count, 8, 8))
         vectors[-1, 4:6] += forces.tip
-        if not (forces.moment or forces.follower.any()):
+        if not (forces.moment or np.any(forces.follower)):
             return vectors, matrices
         a = state[-1, 1]
         square, turned = float(a @ a), QUARTER @ a

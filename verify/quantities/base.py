@@ -41,7 +41,7 @@ MODEL_NAME = "model name"  # annotation key of an argument that names a model (`
 PLACE = "place"
 Place: TypeAlias = Annotated[float, Meta(description="m from the left end", extra={PLACE: True, "unit": "m"})]
 """A position on the beam: `evaluate` raises InputError for one off the beam."""
-TABLES = ("beam", "drive", "slider", "motion")  # tables of a scene that a quantity may depend on
+TABLES = ("beam", "drive", "slider", "motion", "base")  # tables of a scene that a quantity may depend on
 ROUNDING = 1e-12  # tolerance of a position at an end of the beam, relative to its length (as in `linear.positions`)
 UNITS = {"resistance": "ohm", "inductance": "H", "capacitance": "F", "peak": "1", "loss_factor": "1"}
 """Unit of a quantity with several figures by the argument that names the figure."""

@@ -14,6 +14,7 @@ from verify.actuators.transducers import Transducer
 from verify.convert import RULE
 from verify.errors import InputError, raise_all
 from verify.formatting import one_line
+from verify.problem.base_motion import Base, Prescribed, polynomial, still, tabulated
 from verify.problem.beam import Beam, PointForce, check_frequency
 from verify.problem.device import Device
 from verify.problem.slider import Slider
@@ -106,6 +107,56 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 f"drive.kind = {self.kind!r}: its amplitudes are not those of a drive.actuator, give 'voltage' or "
                 "'current', or leave drive.actuator out"
             )
+
+
+class TimeTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A prescribed motion as values at times, between which a spline of degree 5 interpolates."""
+
+    times: tuple[float, ...]
+    """Six or more, ascending from 0, s."""
+    values: tuple[float, ...]
+    """Angle, rad, or coordinate, m, at each time."""
+
+
+class MovingBase(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Prescribed motion of the base that carries the left end of the beam, which starts straight and moving with it.
+
+    A motion is a table, or the coefficients of a polynomial in time: [0, 0, 0.2] is 0.2 t^2.
+    """
+
+    duration: Annotated[float, unit("s")]
+    """Duration, s."""
+    rotation: tuple[float, ...] | TimeTable = ()
+    """Angle, rad."""
+    x: tuple[float, ...] | TimeTable = ()
+    """Coordinate of the axis of rotation along the beam at angle 0, m."""
+    y: tuple[float, ...] | TimeTable = ()
+    """Coordinate of the axis of rotation across the beam at angle 0, m."""
+    hub_radius: float = 0.0
+    """Distance of the beam's left end from the axis of rotation, m."""
+    gravity: tuple[float, float] = (0.0, 0.0)
+    """Along x and y of the ground, m/s^2."""
+
+    def __post_init__(self) -> None:
+        check_number("base.duration", self.duration, "seconds", above=0)
+        for component in self.gravity:
+            check_number("base.gravity", component, "m/s^2")
+        _ = self.motion
+
+    @property
+    def motion(self) -> Base:
+        """The motion in time. Raises InputError for a table that is none."""
+        motions: dict[str, Prescribed] = {}
+        for name in ("rotation", "x", "y"):
+            given = getattr(self, name)
+            try:
+                table = isinstance(given, TimeTable)
+                motions[name] = (
+                    tabulated(given.times, given.values) if table else polynomial(*given) if given else still
+                )
+            except InputError as error:
+                raise InputError(f"base.{name}.{error}") from None
+        return Base(hub_radius=self.hub_radius, **motions)
 
 
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -237,6 +288,8 @@ class Scene(NamedBeam, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Harmonic excitation."""
     slider: Slider | None = None
     """Slider on the beam."""
+    base: MovingBase | None = None
+    """Prescribed motion of the base, for large motion in the plane."""
     claim: tuple[Claim, ...] = ()
     """Published statements, compared with computed values."""
     gate: tuple[Gate, ...] = ()

@@ -26,7 +26,7 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 
     def add(kind: type[msgspec.Struct], where: str) -> None:
         for field in msgspec.structs.fields(kind):
-            tables = structs_of(entry_of(field.type) or field.type)
+            tables = structs_of(entry_of(field.type)) | structs_of(field.type)
             for tag, table in tables.items():
                 if table in kinds.values():  # a material of several actuators
                     continue

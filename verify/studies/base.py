@@ -47,23 +47,26 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 OWN: tuple[str, ...] = ("spectrum", "convergence", "wave", "motion", "motor", "control", "identify")
-OWN += ("claims", "sweep", "optimise", "sensitivity")
+OWN += ("large-motion", "claims", "sweep", "optimise", "sensitivity")
+HOMES = {name: f"verify.studies.{name.replace('-', '_')}:{name.title().replace('-', '')}" for name in OWN}
 STUDIES: Registry[type[Study]] = Registry(
-    "study", "verify.studies", homes={name: f"verify.studies.{name}:{name.capitalize()}" for name in OWN}, classes=True
+    "study", "verify.studies", homes=HOMES, classes=True
 )  # study classes by the name of their section, in the order in which they run
 
 
 def studies_of(scene: Scene) -> list[tuple[str, Study]]:
     """(name, study) of the scene's sections and of the implied ones, in the order of `STUDIES`.
 
-    [[claim]] implies `claims`, a [drive] with two forces `wave` where it runs with its defaults. [motion] without a
-    slider has settings for quantities in time and is no study.
+    [[claim]] implies `claims`, [base] `large-motion`, a [drive] with two forces `wave` where it runs with its defaults.
+    [motion] without a slider has settings for quantities in time and is no study.
     """
     studies: dict[str, Study] = dict(scene.studies)
     if scene.slider is None:
         studies.pop("motion", None)
     if scene.claim:
         studies.setdefault("claims", STUDIES["claims"]())
+    if scene.base:
+        studies.setdefault("large-motion", STUDIES["large-motion"]())
     if "wave" not in studies and len(scene.forces) == 2 and not scene.beside:
         wave = STUDIES["wave"]()
         with suppress(InputError):

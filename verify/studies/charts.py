@@ -78,14 +78,14 @@ def plot_lines(ax: Axes, lines: Iterable[Line], x: Axis, y: Axis) -> None:
 
 
 def beam_movie(
-    lines: Sequence[MovingLine], length: float, height: float, texts: Sequence[str]
+    lines: Sequence[MovingLine], length: float, height: float, texts: Sequence[str], left: float = 0.0
 ) -> Callable[[Axes], Any]:
-    """What `Movie.animate` is, of lines in SI units over a beam of this length up to this height, m."""
+    """What `Movie.animate` is, of lines in SI units over a beam of this length from `left` up to this height, m."""
     along, up = unit_of(length), unit_of(height)
 
     def animate(ax: Axes) -> Any:
-        (left, right), top = (-0.05 * length, 1.05 * length), 1.2 * up.factor * height
-        ax.set(xlim=(along.factor * left, along.factor * right), ylim=(-top, top))
+        ends, top = (left - 0.05 * length, 1.05 * length), 1.2 * up.factor * height
+        ax.set(xlim=(along.factor * ends[0], along.factor * ends[1]), ylim=(-top, top))
         ax.set(xlabel=f"x, {along.name}", ylabel=f"deflection, {up.name}")
         clock = ax.text(0.99, 0.02, "", transform=ax.transAxes, ha="right")
         scaled = [(along.factor * x, up.factor * y, *style) for x, y, *style in lines]

@@ -37,7 +37,7 @@ more than a tenth about its mean."""
 ORDER_BOUNDS = 0.2 * ORDER_SPREAD, ORDER_SPREAD  # departures from the order in theory, as of the standing-wave ratios
 TRUE_OF_ANY_THEORY = ("order", ".count_needed")  # quantities that errors of beam theory do not change
 Request: TypeAlias = tuple[str, dict[str, Any]]  # name and arguments of a quantity
-UNREAD = ("spectrum", "convergence", "wave", "sweep", "optimise", "sensitivity")
+UNREAD = ("spectrum", "convergence", "wave", "large-motion", "sweep", "optimise", "sensitivity")
 """Studies that no quantity reads, or that vary the scene themselves."""
 
 

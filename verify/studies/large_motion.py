@@ -1,0 +1,116 @@
+"""A beam on a moving base: rigid links and nonlinear elements in time, their difference as the uncertainty."""
+
+from typing import Annotated, Any
+
+import numpy as np
+from msgspec import Meta
+
+from verify.analysis.solution_cache import SolutionCache
+from verify.analysis.verdict import Margin, verdict_of
+from verify.convert import convert
+from verify.errors import InputError
+from verify.formatting import unit_over, with_unit
+from verify.quantities.blade import COUNTS, AxialStiffness, Path, TipPath, Tolerance, elements, path_of
+from verify.report.plotting import MovingLine
+from verify.report.result import Column, Movie, Result, Table
+from verify.studies.base import Progress, Scene, Study
+from verify.studies.charts import beam_movie, line_chart, model_style, percent, si
+
+FRAMES = 96
+LOOSER = 10.0  # factor of the tolerance with the smaller numbers: their difference has the error of the steps
+COLUMNS = [Column("model"), Column("N"), si("largest lag", "m"), si("lag at", "s"), si("largest lead", "m")]
+COLUMNS += [si("lead at", "s"), Column("x at the end", "m", ".7g"), Column("y at the end", "m", ".4g")]
+COLUMNS += [si("root moment", "N m"), percent("path off", ".2g")]
+CAPTION = "In the frame of the base: lead towards +y, lag towards -y."
+NOTES = [
+    "In the frame of the base: x along the straight beam, y across it, lead towards +y, lag towards -y. Path off: "
+    "largest distance of the tip from that of the most elements, over the largest motion of the tip or 1 % of the "
+    "length; fewer links and elements with ten times the tolerance. Planar, undamped, without shear and rotary inertia "
+    "of the section; links do not stretch.",
+    "Linear models, their modes and waves are those of a base at rest: they do not apply to this motion.",
+]
+TITLES = {"segment": "links", "fem": "nonlinear elements"}
+STYLES = {"segment": model_style("segment"), "fem": {**model_style("fem"), "linewidth": 3.0}}
+
+
+class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The beam on the moving base of [base], by rigid links and by nonlinear elements."""
+
+    name, title = "large-motion", "The beam on a moving base"
+
+    links: Annotated[int, Meta(ge=2, le=1000, description="Rigid links, and twice as many.")] = COUNTS["segment"]
+    elements: Annotated[int, Meta(ge=2, le=1000, description="Nonlinear elements, and twice as many.")] = COUNTS["fem"]
+    tolerance: Tolerance = 1e-7
+    axial_stiffness: AxialStiffness | None = None
+    samples: Annotated[int, Meta(ge=8, le=100_000, description="Stored instants, ends included.")] = 401
+
+    def check(self, scene: Scene) -> None:
+        """Raise InputError without [base], with a [drive], and for a beam that no moving base carries."""
+        if scene.base is None:
+            raise InputError("large-motion: the base of the beam moves by [base], add it")
+        if scene.drive is not None or scene.slider is not None:
+            raise InputError("base: a beam on a moving base has no [drive] and no [slider], leave out these or [base]")
+        if scene.beam.supports not in (("clamped", "free"), ("pinned", "free")):
+            raise InputError(
+                f"beam.supports = {scene.beam.supports!r}: a moving base carries the left end alone, give "
+                "('clamped', 'free') or ('pinned', 'free')"
+            )
+
+    def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
+        """Simulate both models with two numbers each. Raises InputError."""
+        runs = list[tuple[str, int, TipPath]]()
+        for model, least in (("segment", self.links), ("fem", self.elements)):
+            for count, looser in ((least, LOOSER), (2 * least, 1.0)):
+                progress(f"{count} {TITLES[model]}")
+                options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
+                options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
+                runs.append((TITLES[model], count, path_of(scene, cache, convert(options, Path))))
+        _, links, fewer, best = (path for *_, path in runs)
+        between = links.distance(best)
+        sources = {
+            f"difference of {2 * self.links} links and {2 * self.elements} elements": between,
+            f"numbers and steps of {self.elements} and {2 * self.elements} elements": fewer.distance(best),
+        }
+        remedy = "give more large-motion.links and .elements, or a smaller .tolerance; links never stretch"
+        margins = [Margin(name=name, size=size, harm="discretisation", remedy=remedy) for name, size in sources.items()]
+        size, at = max(best.largest(-1.0), best.largest(1.0))
+        stated = f"Largest deflection of the tip {with_unit(size)} at {at:.4g} s, ± {with_unit(between * best.moved)}"
+        axial, notes = elements(scene.beam, self.elements, self.axial_stiffness).axial_stiffness, list(NOTES)
+        if axial is not None and self.axial_stiffness is None:
+            notes.append(f"EA is unknown: elements have 1e8 EI/L^2, {with_unit(axial, 'N')}.")
+        rows = [
+            (
+                *run,
+                *path.largest(-1.0),
+                *path.largest(1.0),
+                *path.tip[-1],
+                path.root_moment,
+                path.distance(best) or None,
+            )
+            for *run, path in runs
+        ]
+        both = (("fem", best), ("segment", links))
+        lines = [(TITLES[model], path.times, path.tip[:, 1], STYLES[model]) for model, path in both]
+        valid = verdict_of(margins).level != "not trusted"
+        return Result(
+            summary=f"{stated}: by elements, and the difference of links from them." if valid else "",
+            tables=[Table("Tip on the moving base", COLUMNS, rows, notes)],
+            figures=[line_chart("tip", "Deflection of the tip", CAPTION, lines, ("time", "s"), ("y", "m"))],
+            movies=[_movie(links, best)],
+            data={"times": best.times, "links": links.tip, "elements": best.tip, "axial_stiffness": axial},
+            margins=margins,
+        )
+
+
+def _movie(links: TipPath, best: TipPath) -> Movie:
+    """Both models over each other."""
+    kept = np.unique(np.linspace(0, len(best.times) - 1, FRAMES).round().astype(int))
+    unit, length = unit_over([float(best.times[-1])], "s"), float(best.line[0, -1, 0])
+    lines: list[MovingLine] = [
+        (*np.moveaxis(path.line[kept], -1, 0), form, {"markersize": 3, "label": TITLES[model]} | STYLES[model])
+        for model, path, form in (("fem", best, "-"), ("segment", links, "-o"))
+    ]
+    height = max(float(abs(best.line[..., 1]).max()), 0.01 * length)
+    texts = [f"{unit.factor * t:.2f} {unit.name}" for t in best.times[kept].tolist()]
+    animate = beam_movie(lines, length, height, texts, left=min(0.0, float(best.line[..., 0].min())))
+    return Movie("large-motion", "Links and elements in the frame of the base", CAPTION, animate)
