@@ -165,6 +165,20 @@ def test_the_beam_vibrates_on_after_a_moving_load_has_left():
     assert motion.deflection[-len(t) :, 0] == pytest.approx(w, abs=1e-3 * abs(w).max())
 
 
+@pytest.mark.parametrize("amplitude", [0.0, 2.3], ids=["without drive", "driven"])
+def test_a_run_continues_at_its_end_though_a_moving_load_left_before(amplitude):
+    beam, drive = replace(STRIP, loss_factor=0.013), Excitation(PointForce(position=0.037, amplitude=amplitude), 531.0)
+    load = PrescribedSlider(Slider(mass=1e-3, mu=0.0, position=0.31), 23.0)
+    asked = {"model": "fem", "count": PARTS, "keep": Keep(at=0.123, samples=2)}
+    begun, whole = (simulate(beam, drive, t, slider=load, step=5e-6, **asked) for t in (0.0113, 0.0184))
+    assert begun.statistics.finished
+    assert begun.travelled[-1] > STRIP.length - 0.31
+    ended = simulate(beam, drive, 0.0071, start=begun, **asked)
+    assert ended.times[[0, -1]] == pytest.approx([0.0113, 0.0184], rel=1e-12)
+    assert ended.deflection[0, 0] == pytest.approx(begun.deflection[-1, 0], rel=1e-9)
+    assert ended.deflection[-1, 0] == pytest.approx(whole.deflection[-1, 0], rel=1e-7)
+
+
 def test_a_moving_mass_bends_the_beam_by_all_convective_terms():
     """Reaction m (g + w_tt + 2 v w_xt + v^2 w_xx) on six sines by DOP853, 0.3 of the beam's mass."""
     line, still = 0.024 * 0.0021 * 4430, (PointForce(position=0.31, amplitude=0.0),)

@@ -269,4 +269,4 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             gains = float(k1 - k0), float(e1 - e0), float(k0 + e0)
             for name, gained in zip(("lost", "driven"), ends[1, 2 * n :], strict=True):
                 run.journal.balance[name] += gained
-        return run.recorded(z, steps.dt), deflection, gains, system.rigid
+        return run.recorded(z, stage), deflection, gains, system.rigid

@@ -191,8 +191,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
-        end = self._end(stages, recorded)
-        seconds = end - stages[0].origin
+        seconds = recorded.end - stages[0].origin
         mean = 1.0 / seconds if seconds > 0.0 else float("nan")
         deflections, voltages, charges = request.split(journal.deflections)
 
@@ -228,22 +227,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             end=request.end(
                 stages[-1],
                 recorded.z,
-                end,
+                recorded.end,
                 starts=request.starts,
                 sliders=request.sliders,
                 contact=_state(assembly),
                 off="" if recorded.stopped in (END, "diverged", "chatters") else recorded.stopped,
             ),
         )
-
-    def _end(self, stages: list[Stage], recorded: Run) -> float:
-        """End time of a run, s."""
-        steps = recorded.n_steps
-        for stage in stages:
-            if steps <= stage.steps.n:
-                break
-            steps -= stage.steps.n
-        return stage.origin + steps * stage.steps.dt
 
     def _margins(self, fall: float) -> validity.Margins:
         """Margins with the largest downward acceleration of the surface, m/s^2, of points without feet."""
@@ -252,9 +242,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return replace(self.margins, lift_off=fall / self.request.gravity if self.request.gravity else inf)
 
     def _notes(self, recorded: Run) -> tuple[str, ...]:
-        """Notes, with one on events beyond the capacity."""
+        """Notes, with one on events beyond the capacity and one on a load that has left the beam."""
         lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
-        return (*self.notes, *lost * (recorded.n_events > len(recorded.events)))
+        left = ("energy: work of the drive and losses of the beam until the load has left it",)
+        return (*self.notes, *lost * (recorded.n_events > len(recorded.events)), *left * recorded.left)
 
     def _point_offsets(self, assembly: Assembly) -> Array:
         """Positions of the points relative to their slider, (points,), m."""
@@ -276,7 +267,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         deflection = stages[0].deflection(z, np.zeros(1), points)
         recorded = run_stages(stages, z, assembly, points, accounts=rest, progress=lambda n: progress(n / n_steps))
         after = stages[-1].rows.energies(recorded.z)
-        return recorded, deflection, (after[0] - kinetic, after[1] - elastic, kinetic + elastic), rest
+        gains = after[0] - kinetic, after[1] - elastic, kinetic + elastic
+        return recorded, deflection, gains, rest and not recorded.left
 
     def _kinetic(self, assembly: Assembly) -> float:
         """Kinetic energy of sliders and feet, along and across the beam, J."""

@@ -108,7 +108,7 @@ def run_stages(
         z = stage.whole(run.stage(stage, z, places, accounts, progress), float(run.step * stage.steps.dt))
         if run.stopped != "end":
             break
-    return run.recorded(z, stages[-1].steps.dt)
+    return run.recorded(z, stage)
 
 
 class Run:
@@ -135,8 +135,9 @@ class Run:
         )
         self.n_steps, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, REACH
         """Number of steps; processor time of the compiled loop, and of tables and arrays; pieces on each side."""
-        self.stopped, self.z = "end", np.empty(0, dtype=complex)
-        """"end", a message of `Stage.beyond`, "diverged" or "chatters"; the total state of the rows at the end."""
+        self.stopped, self.left, self.end, self.z = "end", False, 0.0, np.empty(0, dtype=complex)
+        """"end", a message of `Stage.beyond`, "diverged" or "chatters"; whether a moving load has left the beam; end
+        time, s; total state of the rows then."""
 
     @property
     def step(self) -> int:
@@ -158,12 +159,12 @@ class Run:
         """Number of events, also beyond the capacity of the journal."""
         return int(self.journal.progress["events"][0])
 
-    def recorded(self, z: ComplexArray, dt: float) -> "Run":
-        """The run that ended with the total state z, in steps of dt, with the samples that it has.
+    def recorded(self, z: ComplexArray, stage: Stage) -> "Run":
+        """The run that ended in a stage with the total state z, with the samples that it has.
 
         Adds the energy of the normal springs at the end of the last step, with depths extrapolated from its middle.
         """
-        p, c, feet = self.assembly.points, self.assembly.contacts, self.assembly.feet
+        p, c, feet, dt = self.assembly.points, self.assembly.contacts, self.assembly.feet, stage.steps.dt
         if len(feet):
             foot = feet[p["foot"]]
             rise = foot["velocity_z"] + p["arm"] * foot["pitch_rate"]
@@ -173,7 +174,7 @@ class Run:
         self.journal = j._replace(
             samples=j.samples[:n], heights=j.heights[:n], pressures=j.pressures[:n], deflections=j.deflections[:n]
         )
-        self.z = z
+        self.z, self.end = z, stage.origin + self.step * dt
         return self
 
     def stage(self, stage: Stage, z: ComplexArray, places: Array, accounts: bool, progress: Progress) -> ComplexArray:
@@ -279,6 +280,7 @@ class Run:
         sliders["x"] += (stage.steps.n - begun) * dt * sliders["v"]
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
         journal.progress["step"], journal.progress["samples"] = stage.steps.n, row + len(rest)
+        self.left = True
 
 
 def of_all(records: Records) -> dict[str, float]:
