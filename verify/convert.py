@@ -54,7 +54,7 @@ def _errors(data: Any, kind: Any, where: str) -> Iterator[str]:
     if len(tables := structs_of(kind)) > 1 and isinstance(data, dict):
         yield from _tagged_errors(data, tables, where)
         return
-    table, inside = table_of(kind), list[str]()
+    table, inside = next(iter(tables.values()), None), list[str]()
     lists = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), None)
     if table is not None and isinstance(data, dict):
         fields = {field.encode_name: field for field in msgspec.structs.fields(table)}
@@ -113,15 +113,13 @@ def sentence(field: str, value: Any, kind: Any, error: str = "") -> str:
         limits = [f"{text} {edge:g}" for name, text in _LIMITS for m in metas if (edge := getattr(m, name)) is not None]
         number = f"a {'finite' if float in arms else 'whole'} number {' and '.join(limits)}".rstrip()
         return f"{subject}: give {number}" + (f" ({unit})" if (unit := extra_of(kind, "unit")) else "")
-    table = table_of(kind)
+    table = next(iter(structs_of(kind).values()), None)
     if table is not None and not isinstance(value, dict):
         return f"{subject}: give a table, a {table.__name__} in Python"
-    rule, text = (
-        extra_of(kind, RULE),
-        error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", ""),
-    )
+    text = error.partition(", got ")[0].partition(" - at ")[0].replace("Expected", "give").replace(" | null", "")
     text = re.sub(r"`(\w[\w |]*)`", lambda m: " or ".join(_PLAIN.get(w, w) for w in m[1].split(" | ")), text)
     text = text.replace("length <=", "length at most").replace("length >=", "length at least")
+    rule = extra_of(kind, RULE)
     return f"{subject}: {f'give {rule}' if rule else text}"
 
 
@@ -139,11 +137,6 @@ def metas_of(kind: Any) -> list[msgspec.Meta]:
     if hasattr(kind, "__metadata__"):
         return [*kind.__metadata__, *metas_of(get_args(kind)[0])]
     return [meta for arm in get_args(kind) for meta in metas_of(arm)] if get_origin(kind) in (Union, UnionType) else []
-
-
-def table_of(kind: Any) -> type[msgspec.Struct] | None:
-    """The struct among the members of a union."""
-    return next(iter(structs_of(kind).values()), None)
 
 
 def structs_of(kind: Any) -> dict[str, type[msgspec.Struct]]:

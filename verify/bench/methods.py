@@ -22,10 +22,11 @@ from verify.dynamics.arguments import Excitation, Keep
 from verify.dynamics.simulate import simulate
 from verify.elements.stock import stock_frequency_hz
 from verify.engines.base import ENGINES, chain_of, missing
-from verify.errors import InputError, near_name
+from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam, PointForce
 from verify.problem.slider import Slider
+from verify.validation import check_choice
 
 SIZES = (24, 49, 98, 196, 392)
 PARTS = {"segment": "segments", "fem": "elements"}
@@ -308,8 +309,7 @@ SETS = {one.__name__: one for one in _ALL}
 def questions(names: Sequence[str], problem: Problem) -> Iterator[Question]:
     """Questions of the named sets (default: all). Raises InputError for an unknown or impossible set."""
     for name in names:
-        if name not in SETS:
-            raise InputError(f"set = {name!r} is unknown: {near_name(name, tuple(SETS))}")
+        check_choice("set", name, tuple(SETS))
     for name in names or SETS:
         if name != "modes" and not problem.forces:
             raise InputError(f"{name}: the scene has no [drive] with forces, add it or bench its modes alone")

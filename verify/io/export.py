@@ -11,12 +11,13 @@ from msgspec.structs import replace
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.arrays import Array
-from verify.errors import InputError, near_name, shown
+from verify.errors import InputError, shown
 from verify.files import whole, writable_folder, write_whole
 from verify.io.data import Dataset, Request, dataset
 from verify.report.plotting import drawn, style
 from verify.report.result import to_json
 from verify.studies.convergence import Convergence
+from verify.validation import check_choice
 
 if TYPE_CHECKING:
     from verify.scene.model import Scene
@@ -42,8 +43,7 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
         raise InputError(f"to = {shown(str(path))}: the suffix is no file type, give one of .{', .'.join(TYPES)}")
     there = [*["motion"] * (scene.motion is not None), *["wave"] * bool(scene.forces), "modes"]
     what = request.what or next(what for what in [*there, CHART] if what in TYPES[kind])
-    if what not in (*DATA, CHART):
-        raise InputError(f"what = {what!r} is not known: {near_name(what, (*DATA, CHART))}")
+    check_choice("what", what, (*DATA, CHART))
     if what not in TYPES[kind]:
         holding = ", ".join(f".{name}" for name, held in TYPES.items() if what in held)
         raise InputError(f"what = {what!r}: a .{kind} file does not hold it, give one of {holding}")

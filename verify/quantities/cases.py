@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 
 from verify.cases import layer
-from verify.errors import InputError, near_name
 from verify.quantities.base import quantity
 from verify.quantities.options import Sizes
-from verify.validation import check_sizes
+from verify.validation import check_choice, check_sizes
 
 if TYPE_CHECKING:
     from verify.cases.base import Case
@@ -27,8 +26,7 @@ def named(name: str) -> "Case":
     """The case of that name. Raises InputError for an unknown one."""
     from verify.cases.table import CASES
 
-    if name not in CASES:
-        raise InputError(f"case = {name!r} is not known: {near_name(name, tuple(CASES))}")
+    check_choice("case", name, tuple(CASES))
     return CASES[name]
 
 

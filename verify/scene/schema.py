@@ -10,10 +10,10 @@ from typing import Any
 import msgspec
 
 from verify.convert import description_of, entry_of, structs_of
-from verify.errors import InputError, near_name
 from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
 from verify.studies.base import STUDIES
+from verify.validation import check_choice
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """Read by TOML editors."""
@@ -44,8 +44,7 @@ def sections() -> dict[str, type[msgspec.Struct]]:
 def scene_schema(section: str = TOP) -> dict[str, Any]:
     """JSON Schema, draft 7, of a scene file or of one of its sections. Raises InputError for an unknown section."""
     kinds = sections()
-    if section not in kinds:
-        raise InputError(f"section = {section!r} is not known: {near_name(section, tuple(kinds))}")
+    check_choice("section", section, tuple(kinds))
     references, tables = msgspec.json.schema_components(kinds.values(), ref_template="#/$defs/{name}")
     names = {name: reference["$ref"] for name, reference in zip(kinds, references, strict=True)}
     tables = {name: _tidy(table) for name, table in tables.items()}

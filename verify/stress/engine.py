@@ -12,8 +12,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError
 from verify.parallel import map_processes
+from verify.validation import check_choice
 
 MODULES = ("modes", "waves", "motion")
 DIGITS = 60
@@ -125,8 +126,7 @@ def select(ids: Sequence[str] = (), *, slow: bool = False) -> list[Check]:
     """Checks by id, or all; slow ones only by id or with `slow`. Raises InputError for an unknown id."""
     checks = registry()
     for name in ids:
-        if name not in checks:
-            raise InputError(f"check = {name!r} is unknown: {near_name(name, tuple(checks))}")
+        check_choice("check", name, tuple(checks))
     return [checks[name] for name in ids] or [one for one in checks.values() if slow or not one.slow]
 
 
