@@ -31,12 +31,16 @@ def as_plain(value: Value | None) -> Any:
     return float(value) if isinstance(value, Estimate) else value
 
 
-def as_text(value: Value, digits: int = 12) -> str:
-    """A value as text: '1.5', '1 +2i', '0.9 .. 1.1', '9.8 ± 0.2'."""
-    if isinstance(value, complex):
-        return f"{value.real:.{digits}g} {value.imag:+.{digits}g}i"
-    if isinstance(value, Bracket):
-        return f"{value.lower:.{digits}g} .. {value.upper:.{digits}g}"
-    if isinstance(value, Estimate) and value.error:
+def as_text(value: Value, form: str = "") -> str:
+    """A value as text: '1.5', '1 + 2i', '0.9 to 1.1', '9.8 ± 0.2'.
+
+    `form` is that of numbers; by default they have 12 digits, and an estimate those that hold.
+    """
+    if isinstance(value, Estimate) and value.error and not form:
         return with_error(value, value.error)
-    return "NaN" if isnan(value) else f"{value:.{digits}g}" if isfinite(value) else "infinity"
+    form = form or ".12g"
+    if isinstance(value, complex):
+        return f"{value.real:{form}} {'+-'[value.imag < 0]} {abs(value.imag):{form}}i"
+    if isinstance(value, Bracket):
+        return f"{value.lower:{form}} to {value.upper:{form}}"
+    return "NaN" if isnan(value) else f"{value:{form}}" if isfinite(value) else "infinity"

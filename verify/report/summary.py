@@ -7,8 +7,9 @@ from importlib.metadata import PackageNotFoundError, version
 from math import ceil, log10
 from typing import TYPE_CHECKING, Any
 
+from verify.estimate import as_text
 from verify.parallel import versions
-from verify.report.result import MISSING, Column, Table, plain, print_verdict
+from verify.report.result import Column, Table, plain, print_verdict
 from verify.studies.base import STUDIES
 
 if TYPE_CHECKING:
@@ -39,26 +40,13 @@ def gates_sentence(run: "RunResult") -> str:
 
 def expected(gate: Any) -> str:
     """The acceptance criterion of a gate in the digits that its tolerance needs: '4469.9 ± 0.5', 'at least 0.9'."""
-    if gate.expect is not None:
-        if gate.within is None:
-            return f"contains {value_text(gate.expect, '.9g')}"
-        size = abs(complex(gate.expect.re, gate.expect.im)) if hasattr(gate.expect, "re") else abs(gate.expect)
-        digits = max(ceil(log10(size / gate.within)), 1) + 2 if size else 3
-        return f"{value_text(gate.expect, f'.{digits}g')} ± {gate.within:g}"
-    return str(gate.limits)
-
-
-def value_text(value: Any, form: str = ".7g") -> str:
-    """A measured value: a number, a complex number, or a bracket as 'lower to upper'."""
-    if value is None:
-        return MISSING
-    if hasattr(value, "lower"):
-        return f"{value.lower:{form}} to {value.upper:{form}}"
-    if hasattr(value, "re"):
-        value = complex(value.re, value.im)
-    if isinstance(value, complex):
-        return f"{value.real:{form}} {'+-'[value.imag < 0]} {abs(value.imag):{form}}i"
-    return format(value, form)
+    if gate.expect is None:
+        return str(gate.limits)
+    value = complex(gate.expect.re, gate.expect.im) if hasattr(gate.expect, "re") else float(gate.expect)
+    if gate.within is None:
+        return f"contains {as_text(value, '.9g')}"
+    digits = max(ceil(log10(abs(value) / gate.within)), 1) + 2 if value else 3
+    return f"{as_text(value, f'.{digits}g')} ± {gate.within:g}"
 
 
 def gates_table(run: "RunResult") -> Table:
@@ -67,8 +55,10 @@ def gates_table(run: "RunResult") -> Table:
     rows: list[tuple[Any, ...]] = []
     for gate in gates:
         quantity = " ".join([gate.gate.quantity, *(f"{key}={value}" for key, value in gate.gate.arguments.items())])
-        measured = expected(gate.gate), value_text(gate.value), "" if gate.unit == "1" else gate.unit, gate.fraction
-        rows.append((VERDICTS[gate.passed], gate.id, quantity, *measured, gate.reason or gate.gate.why))
+        measured = None if gate.value is None else as_text(gate.value, ".7g")
+        unit = "" if gate.unit == "1" else gate.unit
+        row = VERDICTS[gate.passed], gate.id, quantity, expected(gate.gate), measured, unit, gate.fraction
+        rows.append((*row, gate.reason or gate.gate.why))
     columns = [Column(name) for name in ("verdict", "gate", "quantity", "expected", "measured", "unit")]
     return Table("Gates", [*columns, Column("of tolerance", format=".3g", percent=True), Column("why")], rows)
 
@@ -138,8 +128,7 @@ def gates_in_short(run: "RunResult") -> Table:
     """The gates that ran in five columns that fit 80 characters; the page has them in full."""
     rows = []
     for gate in (gate for gate in run.gates if gate.passed is not None):
-        unit = "" if gate.unit == "1" or gate.value is None else f" {gate.unit}"
-        measured = (value_text(gate.value) + unit).rstrip()
+        measured = None if gate.value is None else f"{as_text(gate.value, '.7g')} {gate.unit}".removesuffix(" 1")
         rows.append((VERDICTS[gate.passed], gate.id, measured, expected(gate.gate), gate.fraction))
     names = ("verdict", "gate", "measured", "expected")
     return Table("Gates", [*map(Column, names), Column("of tolerance", format=".3g", percent=True)], rows)
