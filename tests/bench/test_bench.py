@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from verify.bench import Method, Question, Row, measure, result, time_at
 from verify.bench.methods import Problem, engines_slider, questions
+from verify.bench.work_precision import Method, Question, Row, measure, result, time_at
 from verify.cli import status_of
 from verify.engines.base import ENGINES, missing
 from verify.errors import InputError

@@ -10,9 +10,8 @@ from verify.errors import InputError
 from verify.scene.file import STARTER, packaged_scenes, toml_text
 from verify.scene.load import scene_from, tables_of
 from verify.scene.model import Claim
-from verify.scene.run import skipped_gates
+from verify.scene.run import scene_warnings, skipped_gates
 from verify.scene.schema import scene_schema, sections
-from verify.scene.warnings import scene_warnings
 
 # --- Loading ---
 

@@ -6,9 +6,7 @@ import pytest
 
 from verify.cli import status_of
 from verify.errors import InputError
-from verify.stress import run, select
-from verify.stress.engine import Check, registry
-from verify.stress.report import result
+from verify.stress.engine import Check, registry, result, run, select
 
 BUSY = {"size-segments", "size-elements", "near-buckling"}
 """Checks of 5 to 15 s: `verify stress` runs them."""

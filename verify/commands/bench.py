@@ -26,8 +26,8 @@ def bench(
 
     Times are processor seconds, medians of interleaved rounds. Example: `verify bench modes chain --sizes 49,98`
     """
-    from verify.bench import measure, result  # which load scipy
-    from verify.bench.methods import SETS, Problem, problem_of, questions
+    from verify.bench.methods import SETS, Problem, problem_of, questions  # which load scipy
+    from verify.bench.work_precision import measure, result
 
     problem = problem_of(load_scene(scene, (), TABLES)) if scene else Problem()
     counts = convert(typed(sizes, tuple[int, ...], "--sizes"), tuple[int, ...], "--sizes") if sizes else problem.sizes

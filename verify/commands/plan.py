@@ -9,7 +9,7 @@ from verify.commands.shared import format_options, overrides_option, scene_argum
 from verify.report.result import Column, Result, Table
 from verify.scene.load import load_scene
 from verify.scene.run import plan as plan_scene
-from verify.scene.warnings import scene_warnings
+from verify.scene.run import scene_warnings
 
 
 @click.command()

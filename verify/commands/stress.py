@@ -5,8 +5,7 @@ from typing import Any
 import click
 
 from verify.commands.shared import GATE_FAILED, format_options, progress, show
-from verify.stress.engine import run, select
-from verify.stress.report import result
+from verify.stress.engine import result, run, select
 
 
 @click.command()

@@ -15,7 +15,6 @@ from verify.errors import InputError, raise_all
 from verify.quantities.base import QUANTITIES, evaluate
 from verify.scene.load import load_scene, study_errors
 from verify.scene.model import Complex, Gate, Scene
-from verify.scene.warnings import scene_warnings
 from verify.studies.base import STUDIES, result_of, studies_of
 from verify.studies.tables import premises
 
@@ -114,6 +113,16 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             return verdict
         headline = f"Trusted as far as its gates: {self.gates_in_words}."
         return Verdict(level="trusted", headline=headline, margins=verdict.margins)
+
+
+def scene_warnings(scene: Scene) -> tuple[str, ...]:
+    """A sentence for each gate that accepts any negative error."""
+    return tuple(
+        f"gate {gate.id}: at_most alone accepts any negative value: give at_least too, or expect and within"
+        for gate in scene.gate
+        if gate.at_most is not None and gate.at_least is None
+        if gate.quantity.endswith("error") and not gate.quantity.endswith(("shape_error", "curvature_error"))  # norms
+    )
 
 
 @one_blas_thread()

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from decimal import localcontext
 from functools import partial
 from importlib import import_module
@@ -14,11 +14,15 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.parallel import map_processes
+from verify.report.result import Column, Result, Table
 from verify.validation import check_choice
 
 MODULES = ("modes", "waves", "motion")
 DIGITS = 60
 HALVINGS = 8
+COLUMNS = [Column("check"), Column("parameter"), Column("range"), Column("tolerance", format=".3g")]
+COLUMNS += [Column("worst", format=".2g"), Column("breaks at"), Column("standard", format=".1g")]
+NOTE = "worst: largest error over the range; standard: that of the standard method."
 Error: TypeAlias = Callable[..., float]
 Points: TypeAlias = tuple[tuple[float, float], ...]
 
@@ -136,6 +140,29 @@ def run(
     """Outcomes in the order of the checks, with `jobs` processes; default: VERIFY_JOBS."""
     ids = [one.id for one in checks]
     return map_processes(_run_by_id, ids, lambda i: progress(ids[i]), jobs)
+
+
+def result(outcomes: Sequence[Outcome]) -> Result:
+    """Table and data of the outcomes."""
+    records = []
+    for outcome in outcomes:
+        check = registry()[outcome.id]
+        own = {name: getattr(check, name) for name in ("id", "title", "parameter", "tolerance")}
+        own |= {"from": check.values[0], "to": check.values[-1]} | asdict(outcome)
+        own["baseline"] = max((error for _, error in outcome.baseline), default=None)
+        records.append(own | {"baseline_name": check.baseline[0] if check.baseline else ""})
+    failed = [one["id"] for one in records if not one["passed"]]
+    rows = []
+    for one in records:
+        breaks = f"{one['breaks_at']:.3g} {one['breaks_by']}" if one["breaks_by"] else None
+        values = f"{one['from']:.3g} .. {one['to']:.3g}", one["tolerance"], one["worst"], breaks, one["baseline"]
+        rows.append((one["id"], one["parameter"], *values))
+    return Result(
+        summary=f"{len(records) - len(failed)} of {len(records)} checks are within their tolerance.",
+        tables=[Table("Stress checks", COLUMNS, rows, [NOTE])],
+        warnings=[f"{name} fails" for name in failed],
+        data={"checks": records},
+    )
 
 
 def _run_by_id(name: str) -> Outcome:
