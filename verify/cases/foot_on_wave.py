@@ -13,6 +13,7 @@ from verify.cases.base import case
 from verify.cases.beams import STRIP
 from verify.cases.wave import CREST, K, wave_stage
 from verify.contact.state import Record
+from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import cut
 from verify.dynamics.stepping import run_stages
@@ -39,7 +40,8 @@ def foot_on_wave(half_angle: float, speed_ratio: float, epsilon: float, points: 
     contact = Contact(layer_stiffness=1.0, layer_tangential_stiffness=along)
     foot = Foot(length=length, points=points, offset=0.5 * length, pitches=False)
     slider = Slider(mass=1.0, mu=MU, law="coulomb", contact=contact, foot=(foot,), coupling="one-way")
-    assembly = assemble(STRIP, (slider,), (0.0,), (-speed_ratio * CREST * AMPLITUDE,), (True,))
+    held = PrescribedSlider(slider, -speed_ratio * CREST * AMPLITUDE, fixed_position=True)
+    assembly = assemble(STRIP, [held], (0.0,))
     assembly.feet["inverse_mass"] = 0.0
     assembly.feet["height"] = AMPLITUDE * cos(half_angle)
     return run_stages([stage], np.empty(0, dtype=complex), assembly, np.empty(0)).journal.samples[-1, 0]

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.cases.beams import STRIP
+from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.excitation import Rows
 from verify.dynamics.linear_system import Stage, Steps
@@ -21,7 +22,7 @@ LEVER = 1e6
 def on_surface(slider: Slider, speed: float | None = None) -> Assembly:
     """A slider in bilateral contact at x = 0, of prescribed speed on the mass on a spring."""
     slider = replace(slider, coupling="one-way") if speed is None else replace(slider, normal="massless")
-    assembly = assemble(STRIP, (slider,), (0.0,), (speed,), (False,))
+    assembly = assemble(STRIP, [PrescribedSlider(slider, speed)], (0.0,))
     assembly.points["lever"] = LEVER
     return assembly
 

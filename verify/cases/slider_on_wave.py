@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from verify.cases.base import case
 from verify.cases.beams import STRIP
 from verify.cases.wave import OMEGA, K, wave_stage
+from verify.dynamics.arguments import sliders_of
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.stepping import run_stages
@@ -31,7 +32,7 @@ def terminal_speed(slider: Slider, amplitude: float) -> float:
 
     def period(speed: float, stage: Stage) -> tuple[float, float]:
         """(displacement, change of speed) over a period."""
-        assembly = assemble(STRIP, (slider,), (0.5 * STRIP.length,), (None,), (False,))
+        assembly = assemble(STRIP, sliders_of(slider), (0.5 * STRIP.length,))
         assembly.sliders["v"][0] = speed
         run_stages([stage], np.empty(0, dtype=complex), assembly, np.empty(0))
         return float(assembly.sliders["x"][0]), float(assembly.sliders["v"][0]) - speed

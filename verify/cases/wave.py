@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from verify.cases.beams import HERTZ, STRIP
 from verify.contact.state import Record
+from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.linear_system import EXACT_DEGREE, Stage, Steps, cut
 from verify.dynamics.stepping import Run, run_stages
@@ -39,7 +40,8 @@ def held_on(
 
     Of `count` time steps a period; one-way.
     """
-    assembly = assemble(STRIP, (replace(slider, coupling="one-way"),), (x,), (0.0,), (True,))
+    held = PrescribedSlider(replace(slider, coupling="one-way"), 0.0, fixed_position=True)
+    assembly = assemble(STRIP, [held], (x,))
     assembly.feet["velocity_z"] = velocity_z
     stage = replace(wave, steps=cut(periods * wave.duration, wave.duration / count, periods))
     return run_stages([stage], np.empty(0, dtype=complex), assembly, np.empty(0)), assembly.feet[0]

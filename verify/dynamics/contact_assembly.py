@@ -18,6 +18,7 @@ from verify.contact.state import (
     Kind,
     Records,
 )
+from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.stepping import Assembly
 from verify.errors import InputError, written
 from verify.linear.positions import SLACK
@@ -27,23 +28,14 @@ from verify.problem.beam import Beam
 from verify.problem.slider import Foot, Slider
 
 
-def assemble(
-    beam: Beam,
-    sliders: Sequence[Slider],
-    starts: Sequence[float],
-    prescribed_speeds: Sequence[float | None],
-    fixed: Sequence[bool],
-) -> Assembly:
+def assemble(beam: Beam, sliders: Sequence[PrescribedSlider], starts: Sequence[float]) -> Assembly:
     """Sliders without transverse motion, feet at height 0.
 
     A slider without `contact` is one bilateral point; its normal force is prescribed, or includes the reaction of its
     mass (two-way coupling with normal = "bilateral").
     """
-    first = sliders[0]
-    bodies = [
-        _bodies(beam, slider, start - starts[0], speed, stays)
-        for slider, start, speed, stays in zip(sliders, starts, prescribed_speeds, fixed, strict=True)
-    ]
+    first = sliders[0].slider
+    bodies = [_bodies(one, start - starts[0]) for one, start in zip(sliders, starts, strict=True)]
     half, feet = section_at(beam, starts[0]).surface_distance, 0
     for number, (_, own_feet, points) in enumerate(bodies):
         points["slider"] = number
@@ -64,20 +56,18 @@ def assemble(
             following=first.kinematics == "following",
             gravity=float(first.gravity),
         ),
-        moving_load=all(s.mu == 0.0 and v is not None for s, v in zip(sliders, prescribed_speeds, strict=True)),
+        moving_load=all(one.slider.mu == 0.0 and one.speed is not None for one in sliders),
         restitution=first.contact.restitution if first.contact and first.contact.hard else None,
     )
 
 
-def _bodies(
-    beam: Beam, slider: Slider, offset: float, speed: float | None, fixed: bool
-) -> tuple[Records, Records, Records]:
+def _bodies(prescribed: PrescribedSlider, offset: float) -> tuple[Records, Records, Records]:
     """A slider `offset` from the first, its feet and points, of which the feet are numbered from 0."""
-    row = np.zeros(1, SLIDER)
+    row, slider, speed = np.zeros(1, SLIDER), prescribed.slider, prescribed.speed
     row["v"], row["inverse_mass"] = (slider.speed, 1.0 / slider.mass) if speed is None else (speed, 0.0)
     row["mu"], row["mu_static"] = slider.mu, slider.mu if slider.mu_static is None else slider.mu_static
     row["steepness"], row["external_force"] = slider.steepness or 0.0, slider.external_force
-    row["free"] = 0.0 if fixed else 1.0
+    row["free"] = 0.0 if prescribed.fixed_position else 1.0
     if slider.contact:
         feet = np.concatenate([_foot(slider, foot) for foot in slider.feet])
         sheets = [_foot_points(slider, foot) for foot in slider.feet]

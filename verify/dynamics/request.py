@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array
-from verify.dynamics.arguments import SHORTEST, Excitation, Keep, Sliders, Step, sliders_of, step_of
+from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of, step_of
 from verify.dynamics.circuits import check_circuits
 from verify.dynamics.contact_assembly import check_sliders
 from verify.dynamics.excitation import CONSTANT, check_damping
@@ -52,16 +52,19 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     start: str
     modal_damping: float | None
     """Damping ratio of every mode; None: by the beam's loss factor."""
-    sliders: tuple[Slider, ...]
+    prescribed: tuple[PrescribedSlider, ...]
     starts: tuple[float, ...]
     """Initial positions of the sliders, m; in a continued run those of the first run."""
-    prescribed_speeds: tuple[float | None, ...]
-    fixed: tuple[bool, ...]
     points: Array
     pieces: tuple[Growth, ...]
     step: float | None
     before: EndState | None
     circuits: tuple[Mounted, ...] = ()
+
+    @property
+    def sliders(self) -> tuple[Slider, ...]:
+        """The sliders without their prescribed motion."""
+        return tuple(one.slider for one in self.prescribed)
 
     @property
     def omega(self) -> float:
@@ -175,10 +178,8 @@ def request_of(
         modes=FEET_MODES if modes is None and feet and not kind.sized else modes,
         start=begins,
         modal_damping=modal_damping if replaced else None,
-        sliders=sliders,
+        prescribed=given,
         starts=starts,
-        prescribed_speeds=tuple(one.speed for one in given),
-        fixed=tuple(one.fixed_position for one in given),
         points=vector_on("keep.at", keep.at, beam.length),
         pieces=_cut(duration, excitation.growth, longest, keep.samples - 1),
         step=step.seconds,

@@ -66,7 +66,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             request=request,
             basis=basis,
             stages=stages,
-            assembly=assemble(beam, request.sliders, starts, request.prescribed_speeds, request.fixed),
+            assembly=assemble(beam, request.prescribed, starts),
             coupling=validity.coupling_of(beam, request.sliders, starts, stages[-1], receptance),
             margins=validity.margins_of(request, stages[-1]),
             notes=notes,

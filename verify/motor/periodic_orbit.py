@@ -8,6 +8,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
+from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.contact_assembly import assemble
 from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError
@@ -53,7 +54,8 @@ def periodic_orbit(
     height = float(np.ptp(run.height[-61:]) + np.abs(run.end.feet[:, 0]).max()) + 1e-12
     arm = float(np.abs(run.point_offsets).max()) or 1.0
     scale = np.multiply.outer([height, height / arm], [1.0, 2.0 * np.pi * case.frequency_hz]).ravel()
-    feet = assemble(case.beam, (slider,), (slider.initial_position(case.beam),), (speed,), (True,)).feet
+    held = PrescribedSlider(slider, speed, fixed_position=True)
+    feet = assemble(case.beam, [held], (slider.initial_position(case.beam),)).feet
     moves = np.stack([feet["inverse_mass"], feet["inverse_inertia"]], axis=1) > 0.0
     free = np.flatnonzero(np.repeat(moves, 2, axis=1).ravel())
     size = np.tile(scale, len(moves))[free]
