@@ -70,11 +70,11 @@ def python_scalar(value: Any) -> Any:
     return value.item() if hasattr(value, "dtype") and getattr(value, "shape", None) == () else value
 
 
-def check_unmasked(field: str, value: object, unit: str = "") -> None:
+def check_unmasked(field: str, value: object) -> None:
     """Raise InputError for a masked array, whose mask `numpy.asarray` would drop."""
     mask: Any = getattr(value, "mask", None)
     if mask is not None and mask.any():
-        raise InputError(f"{field} has masked numbers: leave them out or unmask them{unit and f' ({unit})'}")
+        raise InputError(f"{field} has masked numbers: leave them out or unmask them")
 
 
 def check_number(

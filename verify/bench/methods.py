@@ -69,15 +69,17 @@ def rms(values: Any, exact: Any) -> float:
     return float(np.sqrt(np.mean(abs(values - exact) ** 2) / np.mean(abs(exact) ** 2)))
 
 
+def frequency_by(problem: Problem, model: str, **settings: str) -> Callable[[int], float]:
+    """Number of parts -> frequency of the problem's mode, Hz."""
+    build, mode = MODELS[model].build, problem.mode
+    return lambda n: float(build(problem.beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
+
+
 def modes(problem: Problem) -> Iterator[Question]:
     """Natural frequency by number of parts."""
     beam, mode = problem.beam, problem.mode
     exact = ExactModel(beam).frequency_hz(mode)
-
-    def solver(model: str, **settings: str) -> Callable[[int], float]:
-        return lambda n: float(MODELS[model].build(beam, n, **settings).modes(mode).frequencies_hz[mode - 1])
-
-    segments, elements = solver("segment"), solver("fem")
+    segments, elements = frequency_by(problem, "segment"), frequency_by(problem, "fem")
     methods = [
         Method("segments", segments, problem.sizes, model="segment"),
         Method("elements", elements, problem.sizes, model="fem"),
@@ -86,7 +88,8 @@ def modes(problem: Problem) -> Iterator[Question]:
         Method("exact", lambda _: ExactModel(beam).frequency_hz(mode), (0,), "", "analytic"),
     ]
     walls = ("half", "welded", "third-order") if "clamped" in beam.supports else ()
-    methods += [Method(f"segments, {wall} wall", solver("segment", wall=wall), problem.sizes) for wall in walls]
+    by_wall = ((wall, frequency_by(problem, "segment", wall=wall)) for wall in walls)
+    methods += [Method(f"segments, {wall} wall", solver, problem.sizes) for wall, solver in by_wall]
     title = f"frequency of mode {mode}"
     yield Question("modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, methods)
 
@@ -218,10 +221,7 @@ def engines(problem: Problem) -> Iterator[Question]:
     def frequency(adapter: Any) -> Callable[[int], float]:
         return lambda n: float(adapter.frequencies(chain_of(beam, n, (), hertz))[mode - 1])
 
-    def own(n: int) -> float:
-        return float(MODELS["segment"].build(beam, n).modes(mode).frequencies_hz[mode - 1])
-
-    ours = Method("segments", own, problem.sizes[:4])
+    ours = Method("segments", frequency_by(problem, "segment"), problem.sizes[:4])
     theirs = [Method(name, frequency(adapter), problem.sizes[:4]) for name, adapter in adapters.items()]
     title = f"frequency of mode {mode}{absent}"
     yield Question("engines-modes", title, "exact frequency", 1e-14, lambda hertz: hertz / exact - 1.0, [ours, *theirs])

@@ -181,10 +181,10 @@ QUANTITIES = Quantities("quantity", "verify.quantities")
 
 
 def quantity(
-    name: str, *, unit: str, summary: str = "", reads: Sequence[str] = TABLES, devices: bool = False
+    name: str, *, unit: str, reads: Sequence[str] = TABLES, devices: bool = False
 ) -> Callable[[Callable[..., Value]], Quantity]:
-    """Register a function as a quantity; see `Quantity` for the options."""
-    return lambda function: QUANTITIES.register(Quantity(function, name, unit, summary, reads, devices))
+    """Register a function as a quantity, whose docstring is its summary; see `Quantity` for the options."""
+    return lambda function: QUANTITIES.register(Quantity(function, name, unit, "", reads, devices))
 
 
 def figures(

@@ -21,7 +21,7 @@ from verify.problem.slider import Slider
 from verify.problem.supports import check_free
 from verify.scene.file import NamedBeam
 from verify.settings import DriveKind, Reference
-from verify.validation import check_number, unit
+from verify.validation import check_number, check_position, unit
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -74,8 +74,7 @@ class SceneShunt(Load, frozen=True, kw_only=True, forbid_unknown_fields=True):
 def _from_left(field: str, position: float, side: str, beam: Beam) -> float:
     """Distance from the left end of a position measured from one end. Raises InputError off the beam."""
     check_number(field, position, "metres")
-    if not 0 <= position <= beam.length:
-        raise InputError(f"{field} = {position!r} lies off the beam: give a position between 0 and {beam.length!r} m")
+    check_position(field, position, beam.length)
     return position if side == "left" else beam.length - position
 
 
