@@ -174,6 +174,7 @@ def test_a_run_continues_at_its_end_though_a_moving_load_left_before(amplitude):
     assert begun.statistics.finished
     assert begun.travelled[-1] > STRIP.length - 0.31
     ended = simulate(beam, drive, 0.0071, start=begun, **asked)
+    assert begun.mean_surface_speed == pytest.approx(whole.mean_surface_speed, rel=1e-9)  # under the load
     assert ended.times[[0, -1]] == pytest.approx([0.0113, 0.0184], rel=1e-12)
     assert ended.deflection[0, 0] == pytest.approx(begun.deflection[-1, 0], rel=1e-9)
     assert ended.deflection[-1, 0] == pytest.approx(whole.deflection[-1, 0], rel=1e-7)

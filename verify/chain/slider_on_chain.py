@@ -255,7 +255,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         while reason == DONE and run.step < steps.n:
             reason = advance(min(chunk, steps.n - run.step), *arguments, run.journal)
             progress(run.step / steps.n if two_way else 1.0)
-        run.n_steps, run.loop_s = run.step, thread_time() - began
+        run.n_steps, run.seconds, run.loop_s = run.step, run.step * steps.dt, thread_time() - began
         if reason == NOT_FINITE:
             run.stopped = "diverged"
         elif reason == OFF_PIECES:

@@ -191,8 +191,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
-        seconds = recorded.end - stages[0].origin
-        mean = 1.0 / seconds if seconds > 0.0 else float("nan")
+        mean = 1.0 / recorded.seconds if recorded.seconds > 0.0 else float("nan")
         deflections, voltages, charges = request.split(journal.deflections)
 
         def each(values: Array) -> Any:

@@ -133,8 +133,9 @@ class Run:
             balance=np.zeros(1, BALANCE),
             slider_of_foot=owners,
         )
-        self.n_steps, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, REACH
-        """Number of steps; processor time of the compiled loop, and of tables and arrays; pieces on each side."""
+        self.n_steps, self.seconds, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, 0.0, REACH
+        """Number of steps with sliders, and their sum, s; processor time of the compiled loop, and of tables and arrays;
+        pieces on each side."""
         self.stopped, self.left, self.end, self.z = "end", False, 0.0, np.empty(0, dtype=complex)
         """"end", a message of `Stage.beyond`, "diverged" or "chatters"; whether a moving load has left the beam; end
         time, s; total state of the rows then."""
@@ -202,7 +203,7 @@ class Run:
             if self.step < stage.steps.n:
                 began, last, self.reach = thread_time(), first, min(2 * self.reach, FARTHEST)
                 first = None if (around := self._around(stage)) == last else around
-        self.z = rows.z_re + 1j * rows.z_im
+        self.z, self.seconds = rows.z_re + 1j * rows.z_im, self.seconds + self.step * stage.steps.dt
         if reason in (NOT_FINITE, CHATTERS):
             self.stopped = "diverged" if reason == NOT_FINITE else "chatters"
         elif self.step < stage.steps.n:
