@@ -134,7 +134,7 @@ class Run:
             slider_of_foot=owners,
         )
         self.n_steps, self.seconds, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, 0.0, REACH
-        """Number of steps with sliders, and their sum, s; processor time of the compiled loop, and of tables and arrays;
+        """Number of steps with sliders, and their sum, s; processor time of the loop, and of tables and arrays;
         pieces on each side."""
         self.stopped, self.left, self.end, self.z = "end", False, 0.0, np.empty(0, dtype=complex)
         """"end", a message of `Stage.beyond`, "diverged" or "chatters"; whether a moving load has left the beam; end
