@@ -147,7 +147,7 @@ def test_values_that_do_not_converge_have_an_infinite_band():
 def test_the_uncertainty_band_contains_the_exact_frequency(
     titanium_strip, model, settings, expected, limited, unlimited
 ):
-    """Fraction of bands that do, over supports, modes, sizes and ratios of sizes: 0.97 of all, 0.90 with no order known.
+    """Fraction of bands that do, over supports, modes, sizes, ratios: 0.97 without attachments, 0.90 with no order known.
 
     With Gregory's wall the error changes sign: bands by the observed order alone are too narrow in a fifth of cases.
     """

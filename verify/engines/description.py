@@ -8,8 +8,8 @@ Attached bodies and springs are fixed to their rigid link, half to either link w
 part of the mass, centre and inertia of its link.
 
 The joints in bending are those of `SegmentModel`. In torsion a link is a disk at the centre of its inertia, between
-springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the relative error is -(k l)^2/24 at the
-wavenumber k.
+springs GJ/l, 2GJ/l at a wall: order 2 by reflection at both kinds of ends, the leading relative error is -(k l)^2/24
+at the wavenumber k without attached bodies and springs.
 """
 
 from collections.abc import Callable, Iterator, Sequence
