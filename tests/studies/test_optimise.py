@@ -73,6 +73,32 @@ def test_the_fastest_crests_under_a_limit_are_those_of_the_search_over_all_frequ
     assert reflection["active"] is True
 
 
+def test_a_global_search_starts_again_far_from_the_lesser_optimum():
+    """Of a motor whose two optima, near 8957 and 9664 Hz, differ by 0.2 %."""
+    beam = {"length": 0.24, "width": 0.012, "thickness": 0.0015, "youngs_modulus": 200e9, "density": 7850}
+    left, right = ({"position": at, "amplitude": 40.0} for at in (0.00958, 0.24 - 0.00958))
+    drive = {"frequency_hz": 9357.8, "force": [left, right | {"phase_deg": 90}]}
+    scene = scene_from(
+        {"name": "best", "beam": beam | {"supports": ["pinned"] * 2, "loss_factor": 0.01}, "drive": drive}
+    )
+    frequency, coarse = Variable(key="drive.frequency_hz", low=8700.0, high=10000.0), {"model": "segment", "count": 49}
+    limit = Limit(id="pure", quantity="wave.standing_wave_ratio", arguments=coarse, at_most=1.2)
+    settings = {"arguments": coarse, "goal": "maximise", "limit": (limit,)}
+
+    def fastest(hertz, phase, method):
+        variables = replace(frequency, start=hertz), replace(PHASE, start=phase)
+        result = optimum(scene, "wave.crest_speed", variables, **settings, method=method)
+        return result, rows(result.tables[1])["wave.crest_speed"]["finer optimum"]
+
+    found, speed = fastest(9357.8, 90.0, "global")
+    best, lesser = fastest(8950.0, 52.0, "local")[1], fastest(9664.0, 126.0, "local")[1]
+    assert lesser == pytest.approx(0.0497029, rel=1e-5)
+    assert best == pytest.approx(0.0498021, rel=1e-5)
+    assert speed == pytest.approx(best, rel=1e-6)
+    ends = found.data["optima by start"]
+    assert 1e-3 < max(ends) / min(ends) - 1.0 < 2.5e-3
+
+
 def test_a_bound_is_active_below_the_quarter_wavelength():
     places = Variable(key="drive.force.0.position, drive.force.1.position", low=0.005, high=0.02, start=0.017)
     settings = {"goal": "maximise", "method": "local"}

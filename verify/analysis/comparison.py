@@ -201,7 +201,7 @@ def grid_convergence(counts: Sequence[int], values: Sequence[float], expected: i
 
     `expected` is the theoretical order. It replaces a higher observed order, which is due to errors that are about to
     change sign; this raises the fraction of bands that contain the exact frequency from 0.90 to 0.97 on uniform beams
-    without attachments (tests/analysis). With one body on segments it is about 0.8: the error oscillates with its place.
+    without attachments (tests/analysis). With one body on segments it is about 0.8.
     Raises InputError unless there are three different sizes, and for differences within rounding.
     """
     from scipy.optimize import brentq

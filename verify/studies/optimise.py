@@ -11,7 +11,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import accumulate
-from math import inf, log
+from math import dist, inf, log
 from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
@@ -38,6 +38,8 @@ TOLERANCE = 1e-6  # violation, relative to a limit, up to which a point is feasi
 ACTIVE = 1e-3
 FINAL = 1e-9  # accuracy of a variable relative to its range
 POPULATION = 15  # of differential evolution, for each variable
+STARTS = 3  # local searches on the first model: two optima and one that agrees with either
+APART = 0.15  # of a range, between starts and optima: a smaller distance leads a local search to the same optimum
 NOTES = [
     "A bound or a limit is active within 0.1 % of the range or of the limit.",
     "finer: the exact beam where the quantity has it, else twice the count; twice the time steps.",
@@ -141,6 +143,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             coarse.merits([begin])  # in this process, so that forked workers inherit what it compiles
             for stage in STAGES[self.method]:
                 coarse.run(stage)
+            ends = coarse.restarted() if self.method != "local" and coarse.feasible else []
             finest, labels = _finer(variants, self.values(coarse.best))
             if coarse.feasible and any(labels):
                 finer = Search(self, finest, executor, progress)
@@ -167,12 +170,14 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         before = "" if start is None else f" (start: {start:.6g})"
         where = ", ".join(f"{key} = {x:.8g}" for key, x in values.items())
         value = f"{last:.6g} {unit_symbol(QUANTITIES[self.quantity].unit)}".rstrip()
+        several = f"local searches from {len(ends)} starts on the first model end at {', '.join(f'{x:.6g}' for x in ends)}"
+        missed = f" A search may miss a better optimum: {several}." if len(ends) > 1 else ""
         return Result(
-            summary=f"{self.quantity} {self.goal}d: {value}{before} at {where}.",
+            summary=f"{self.quantity} {self.goal}d: {value}{before} at {where}.{missed}",
             tables=shown,
             figures=[Figure("optimise-history", f"Search for the optimum of {self.quantity}", HISTORY, coarse.draw)],
             warnings=notes,
-            data=data | {"loss by discretisation": loss, "history": coarse.history},
+            data=data | {"optima by start": ends, "loss by discretisation": loss, "history": coarse.history},
             margins=[*margins, *finer.variants.margins(values)],
         )
 
@@ -254,11 +259,26 @@ class Search:
         merits = enumerate(map(self.merit, self.rows), 1)
         return [(i, self.sign * merit) for i, merit in merits if merit < INFEASIBLE]
 
-    def run(self, stage: str) -> None:
-        """One method, from the best point so far. Raises InputError where it is not installed."""
+    def restarted(self) -> list[float]:
+        """The optimum, then those of local searches from the best feasible points far from all starts and optima."""
+        seen, ends = [self.best], [self.sign * self.merit(self.best)]
+        while len(ends) < STARTS:
+            far = [key for key in self.rows if all(dist(key, one) > APART for one in seen)]
+            start, before = min(far, key=self.merit, default=self.best), len(self.rows)
+            if start in seen or self.merit(start) >= INFEASIBLE:
+                break
+            self.run("COBYQA", start)
+            end = min([start, *list(self.rows)[before:]], key=self.merit)
+            seen += [start, end]
+            ends.append(self.sign * self.merit(end))
+        return ends
+
+    def run(self, stage: str, start: Point | None = None) -> None:
+        """One method, from `start` or the best point so far. Raises InputError where it is not installed."""
         from scipy.optimize import NonlinearConstraint, differential_evolution, minimize
 
-        start, most, d, before = self.best, self.study.evaluations, len(self.study.variable), len(self.rows)
+        start = start or self.best
+        most, d, before = self.study.evaluations, len(self.study.variable), len(self.rows)
         if stage == "DE":
             options: Any = {"vectorized": True, "updating": "deferred", "polish": False, "rng": self.study.seed}
             options |= {"popsize": POPULATION, "maxiter": max(most // (POPULATION * d) - 1, 1), "x0": start}
