@@ -170,8 +170,8 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         before = "" if start is None else f" (start: {start:.6g})"
         where = ", ".join(f"{key} = {x:.8g}" for key, x in values.items())
         value = f"{last:.6g} {unit_symbol(QUANTITIES[self.quantity].unit)}".rstrip()
-        several = f"local searches from {len(ends)} starts on the first model end at {', '.join(f'{x:.6g}' for x in ends)}"
-        missed = f" A search may miss a better optimum: {several}." if len(ends) > 1 else ""
+        several = f"from {len(ends)} starts, on the first model, it ends at {', '.join(f'{x:.6g}' for x in ends)}"
+        missed = f" The search may miss a better optimum: {several}." if len(ends) > 1 else ""
         return Result(
             summary=f"{self.quantity} {self.goal}d: {value}{before} at {where}.{missed}",
             tables=shown,
