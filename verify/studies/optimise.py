@@ -38,8 +38,8 @@ TOLERANCE = 1e-6  # violation, relative to a limit, up to which a point is feasi
 ACTIVE = 1e-3
 FINAL = 1e-9  # accuracy of a variable relative to its range
 POPULATION = 15  # of differential evolution, for each variable
-STARTS = 3  # local searches on the first model: two optima and one that agrees with either
-APART = 0.15  # of a range, between starts and optima: a smaller distance leads a local search to the same optimum
+STARTS = 3  # local searches on the first model: enough for the lesser optimum of the documented example, not varied
+APART = 0.15  # of a range, least distance of a start from starts and optima before it; not varied
 NOTES = [
     "A bound or a limit is active within 0.1 % of the range or of the limit.",
     "finer: the exact beam where the quantity has it, else twice the count; twice the time steps.",
