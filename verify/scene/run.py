@@ -173,7 +173,8 @@ def _planned(scene: Scene | str | Path, overrides: Sequence[str]) -> tuple[Scene
     skip = skipped_gates(loaded, overrides)
     rows = [PlanRow(gate.id, "gate", gate.id not in skip, skip.get(gate.id, gate.quantity)) for gate in loaded.gate]
     rows += [PlanRow(name, "study", True) for name in running]
-    absent = {name: f"no {'[[claim]]' if name == 'claims' else f'[{name}]'} in the scene" for name in STUDIES}
+    tables = {name: f"[{name}]" for name in STUDIES} | {"claims": "[[claim]]", "large-motion": "[base]"}
+    absent = {name: f"no {table} in the scene" for name, table in tables.items()}
     absent |= dict.fromkeys(loaded.studies, "settings of quantities in time: the study needs [slider]")
     rows += [PlanRow(name, "study", False, absent[name]) for name in STUDIES if name not in running]
     return loaded, rows
