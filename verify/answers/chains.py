@@ -1,17 +1,27 @@
 """The joints of a beam as a chain of rigid bodies."""
 
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
+from math import hypot, inf, isfinite, pi
 from pathlib import Path
+
+import numpy as np
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.verdict import Margin
+from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
+from verify.engines.choice import Candidate, choose, default_steps, largest_mode, step_errors, trade, with_armature
+from verify.engines.damping import Asked, asked, damped
 from verify.engines.describe import describe
-from verify.engines.description import MOST_LINKS, RigidChain
+from verify.engines.description import MOST_LINKS, RigidChain, Steps
+from verify.engines.integrators import integrator_of, scheme_of
+from verify.engines.steps import simulated_chain
 from verify.engines.writers import data, table, write
 from verify.errors import InputError
+from verify.formatting import with_unit
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 from verify.settings import DEFAULT, wall_label
@@ -19,6 +29,14 @@ from verify.validation import check_integer, check_number
 
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
+
+
+AUTOMATIC = {"MuJoCo": ("implicitfast", "discrete")}
+"""Integrators that are tried in turn where none is named; of other engines the first in `INTEGRATORS`."""
+NOTICED = 0.1
+"""Damping that is not meant, over that which is, from which it is named."""
+MOST_TRIED = 30
+"""Links beyond the fewest, one more at a time, among which those for a step are sought."""
 
 
 @one_blas_thread()
@@ -30,24 +48,176 @@ def engine_chain(
     error: float = 0.01,
     wall: str = DEFAULT.wall,
     in_space: bool = False,
-    damping: float = 0.0,
+    damping: float | str = 0.0,
+    step: float | None = None,
+    engine: str = "",
     path: str | Path | None = None,
 ) -> Result:
     """Joints and links of a beam as a chain of rigid bodies, with the frequency errors of exactly this chain.
 
     `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` at `mode`. `wall`: rule of the
-    joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1. `path`: file to
-    write, .xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links
-    (m, kg, kg m^2) and frequencies (Hz). Raises InputError.
+    joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request in
+    words (`engines.damping.asked`). `step`, s, of `engine` "NAME" or "NAME:INTEGRATOR": chooses links, integrator and
+    armature by which the chain runs, with all errors up to `mode`, of the damping ratio too, within `error`. Without
+    it, the file of an engine has a step of `engines.choice.default_steps`. `path`: file to write, .xml (MJCF), .sdf,
+    .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links (m, kg, kg m^2) and
+    frequencies (Hz). Raises InputError, also where no chain runs at the step.
     """
     check_integer("mode", mode, 1, 100)
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
-    beam = named(beam).beam
-    if count is None:
-        count = fewest(beam, mode, error, wall, in_space)
-    chain = describe(beam, count, wall=wall, in_space=in_space, damping=damping)
-    result = _chain_result(chain, mode)
+    beam, request, end = named(beam).beam, asked(damping), str(path or ".xml").lower()
+    own = end.endswith((".xml", ".mjcf"))
+    engine = engine or "MuJoCo" * (own and path is not None)
+    make = partial(describe, beam, wall=wall, in_space=in_space)
+    tables, why = list[Table](), ""
+    if step is not None:
+        check_number("step", step, "s", above=0)
+        if not engine:
+            raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
+        counts = [count] if count else _counts(beam, max(mode, _highest(request)), error, wall, in_space)
+        heavy = own or end.endswith((".json", ".csv"))
+        chosen, rows = _for_step(
+            [make(n) for n in counts], request, _steps(engine, step, True), mode, error, own, heavy
+        )
+        chain, tables, why = _remarked(chosen), [_trade_table(rows, chosen, mode, error)], _reason(chosen, mode, error)
+    else:
+        count = count or fewest(beam, max(mode, _highest(request)), error, wall, in_space)
+        steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
+        chain = damped(make(count), request, steps, drag=own)
+        chain = default_steps(chain, steps, mode, error) if steps else chain
+    result = _chain_result(chain, mode, error)
+    result = replace(result, tables=[*result.tables, *tables], summary=f"{result.summary} {why}".rstrip())
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
+
+
+def _highest(request: Asked) -> int:
+    """The highest mode that a request of damping names."""
+    return 1 if request.in_hz else int(max(request.at))
+
+
+def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> list[int]:
+    """Numbers of links from the fewest on, up to those that leave a quarter of the error, and one less."""
+    least = fewest(beam, mode, error, wall, in_space)
+    most = least + MOST_TRIED
+    with suppress(InputError):
+        most = min(most, max(least + 2, fewest(beam, mode, 0.25 * error, wall, in_space)))
+    return [*range(max(least - 1, len(beam.pieces), mode + 1, 2), most + 1)]
+
+
+def _steps(engine: str, step: float, damped: bool) -> list[Steps]:
+    """The integrators of `engine` 'NAME' or 'NAME:INTEGRATOR' that are tried in turn. Raises InputError."""
+    name, _, setting = engine.partition(":")
+    row = integrator_of(name, setting)
+    settings = (row.setting,) if setting else AUTOMATIC.get(row.engine, (row.setting,))
+    if not setting and row.engine == "MuJoCo" and step == inf and not damped:
+        settings = ("RK4",)  # the largest limit without dashpots
+    return [Steps(step, row.engine, one) for one in settings]
+
+
+def _for_step(
+    plain: list[RigidChain],
+    request: Asked,
+    integrators: list[Steps],
+    mode: int,
+    error: float,
+    drag: bool,
+    armatures: bool,
+) -> tuple[Candidate, list[Candidate]]:
+    """(the candidate that is chosen, all of them) of chains without dashpots. Raises InputError with what would run."""
+    rows, best = list[Candidate](), 0.0
+    for steps in integrators:
+        found = trade([damped(one, request, steps, drag=drag) for one in plain], steps, modes=mode, armatures=armatures)
+        rows += found
+        if chosen := choose(found, mode, error):
+            return chosen, rows
+        fine = [one.chain for one in found if len(one.space) >= mode and abs(one.space[mode - 1]) <= 0.5 * error]
+        best = max([best, *(each.steps.step for one in fine if (each := default_steps(one, steps, mode, error)).steps)])
+    step, number, first = integrators[0].step, largest_mode(rows, error), rows[0]
+    span = " to ".join(str(n) for n in dict.fromkeys((plain[0].count, plain[-1].count)))
+    named = ", ".join(f"{one.engine} {one.integrator}" for one in integrators)
+    text = f"step = {step!r}: in {named} no chain of {span} links runs within {per_cent(error)} up to mode {mode}"
+    if not first.stable:
+        text += f", {first.links} links diverge (omega_max h = {first.omega_max * step:.3g}, "
+        text += f"limit {first.omega_max * first.limit:.3g})"
+    remedies = [f"give mode {number}"] * bool(number) + [f"a step of {with_unit(best, 's')}"] * bool(best)
+    accurate = (2.0 * pi * step * first.chain.exact_hz(n_modes=mode)[-1]) ** 2 < 12.0 * error  # the trapezoidal rule
+    remedies += ["no in_space"] * first.chain.in_space
+    remedies += ["damping, with which armature runs"] * bool(armatures and accurate and not first.chain.damping)
+    raise InputError(f"{text}: {' or '.join(remedies or ['give more links'])}")
+
+
+def _remarked(chosen: Candidate) -> RigidChain:
+    """The chain with what holds for its armature in its remarks."""
+    if not chosen.beta:
+        return chosen.chain
+    text = (
+        f"armature {chosen.beta:.3g} h^2 k - h c/2: for this step alone, with the dashpots, in one plane, joint angles "
+        "up to 0.3 rad (measured at h omega_max up to 12); undamped or about several axes it diverges at 0.1 rad or less"
+    )
+    return replace(chosen.chain, remarks=(*chosen.chain.remarks, text))
+
+
+def _reason(chosen: Candidate, mode: int, error: float) -> str:
+    """Why a candidate is chosen."""
+    steps = chosen.chain.steps
+    assert steps
+    text = f"For {with_unit(steps.step, 's')} in {steps.engine} {steps.integrator}: the fewest links within "
+    text += f"{per_cent(error)} up to mode {mode}"
+    return text + (", with the least armature that runs." if chosen.beta else ", without armature.")
+
+
+def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
+    """Numbers of links next to the chosen one, with what space and time cost at a mode."""
+    columns = [Column("links"), Column("integrator"), Column("armature, h² k", format=".3g")]
+    columns += [Column("omega_max h", format=".3g"), Column("step limit", "s", ".3g", prefix=True)]
+    names = ("space", "time", "error", "damping added")
+    columns += [*(Column(name, format="+.2g", percent=True) for name in names), Column("it")]
+    each = list[tuple[object, ...]]()
+    for one in (row for row in rows if abs(row.links - chosen.links) <= 2 and len(row.space) >= mode):
+        assert one.chain.steps
+        fate = "runs" if one.worst[mode - 1] <= error else f"is beyond {per_cent(error)}" if one.stable else "diverges"
+        fate = "is chosen" if one is chosen else fate
+        figures = (float(values[mode - 1]) for values in (one.space, one.time, one.error, one.numerical))
+        limit = one.limit if isfinite(one.limit) else None
+        shown = [value if isfinite(value) and one.stable else None for value in figures]
+        top = one.omega_max * one.chain.steps.step
+        each.append((one.links, one.chain.steps.integrator, one.beta or None, top, limit, *shown, fate))
+    note = f"Errors of frequency and damping ratio at mode {mode} in bending; small vibration about rest."
+    return Table("Links for the step", columns, each, [note])
+
+
+def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list[Margin], list[str]]:
+    """(modes as meant and as simulated, margins of the time step, warnings) of a chain for its steps."""
+    steps = chain.steps
+    assert steps
+    columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".6g") for name in ("meant", "simulated"))]
+    columns += [Column("error", format="+.2g", percent=True)]
+    columns += [
+        Column(name, format=".3g", percent=True)
+        for name in ("damping meant", "damping of the file", "damping simulated")
+    ]
+    rows, margins, warnings = list[tuple[object, ...]](), list[Margin](), list[str]()
+    scheme, bare = scheme_of(*steps[1:]), chain
+    if any(hinge.armature for joint in chain.joints for hinge in joint.hinges):
+        bare = with_armature(chain, np.zeros(len(chain.unknowns(chain.axes[0]))))
+    for axis in chain.axes:
+        run, file = (simulated_chain(one, steps.step, scheme, axis).modes for one in (chain, bare))
+        first, worst = int((file.file_hz == 0.0).sum()), (0.0, 1)
+        for i, (_, time, both, more) in enumerate(zip(*step_errors(bare, chain, axis, mode), strict=True)):
+            hertz, zeta = float(run.hz[first + i]), float(run.zeta[first + i])
+            values = hertz / (1.0 + both), hertz, both, zeta - more, float(file.file_zeta[first + i]), zeta
+            rows.append((axis, i + 1, *(float(value) if isfinite(value) else None for value in values)))
+            size = hypot(time, more)
+            worst = max(worst, (size if isfinite(size) else inf, i + 1))
+            if abs(more) > NOTICED * abs(zeta - more) + 1e-6:
+                text = f"{per_cent(zeta)} damping at mode {i + 1} in {axis} in place of {per_cent(zeta - more)}"
+                warnings.append(f"{text}, by the integrator")
+        name, fine = f"time step of {with_unit(steps.step, 's')}", max(error, FINE)
+        where = f"at mode {worst[1]} in {axis}"
+        margins.append(
+            Margin(name=name, size=worst[0], where=where, remedy="give a shorter step", fine=fine, limit=fine)
+        )
+    return Table("As it runs", columns, rows), margins, warnings
 
 
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
@@ -65,7 +235,7 @@ def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_spa
     raise InputError(f"error = {error!r}: {text}")
 
 
-def _chain_result(chain: RigidChain, mode: int) -> Result:
+def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
     """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
     held, n = "clamped" in chain.beam.supports, chain.count
     walls = [name for name in COMPARED if held and name != chain.wall]
@@ -94,4 +264,8 @@ def _chain_result(chain: RigidChain, mode: int) -> Result:
     if chain.in_space and chain.beam.attached:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [table(chain), Table("Frequencies", columns, rows)]
+    if chain.steps:
+        ran, more, texts = _as_it_runs(chain, mode, error)
+        tables, margins, warnings = [*tables, ran], [*margins, *more], [*warnings, *texts]
+    warnings += chain.remarks
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

@@ -203,15 +203,20 @@ INTEGRATORS = (
 """The first setting of an engine is its default."""
 
 
-def scheme_of(engine: str, setting: str = "") -> Scheme:
-    """The scheme of an engine, by default of its first row; capitals do not matter. Raises InputError."""
+def integrator_of(engine: str, setting: str = "") -> Integrator:
+    """The row of an engine, by default its first one; capitals do not matter. Raises InputError."""
     rows = [row for row in INTEGRATORS if row.engine.casefold() == str(engine).casefold()]
     if not rows:
         check_choice("engine", engine, tuple(dict.fromkeys(row.engine for row in INTEGRATORS)))
     named = {row.setting.casefold(): row for row in rows}
     if (name := setting or rows[0].setting).casefold() not in named:
         check_choice("integrator", setting, [row.setting for row in rows])
-    if (scheme := (row := named[name.casefold()]).scheme) is None:
+    return named[name.casefold()]
+
+
+def scheme_of(engine: str, setting: str = "") -> Scheme:
+    """The scheme of a row of `integrator_of`. Raises InputError."""
+    if (scheme := (row := integrator_of(engine, setting)).scheme) is None:
         text = f"has no springs in N m/rad: {row.remark}, choose another of {engine}"
         raise InputError(f"integrator = {shown(setting)} {text}")
     return scheme
