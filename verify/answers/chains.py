@@ -79,7 +79,11 @@ def engine_chain(
         chosen, rows = _for_step(
             [make(n) for n in counts], request, _steps(engine, step, True), mode, error, own, heavy
         )
-        chain, tables, why = _remarked(chosen), [_trade_table(rows, chosen, mode, error)], _reason(chosen, mode, error)
+        chain, tables, why = (
+            _remarked(chosen),
+            [_trade_table(rows, chosen, mode, error)],
+            _reason(rows, chosen, mode, error),
+        )
     else:
         count = count or fewest(beam, max(mode, _highest(request)), error, wall, in_space)
         steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
@@ -151,19 +155,20 @@ def _remarked(chosen: Candidate) -> RigidChain:
     if not chosen.beta:
         return chosen.chain
     text = (
-        f"armature {chosen.beta:.3g} h^2 k - h c/2: for this step alone, with the dashpots, in one plane, joint angles "
-        "up to 0.3 rad (measured at h omega_max up to 12); undamped or about several axes it diverges at 0.1 rad or less"
+        f"armature {chosen.beta:.3g} h^2 k - h c/2: for this step alone, with the dashpots, in one plane, joint "
+        "angles up to 0.3 rad (measured at h omega_max up to 12); undamped or about several axes 0.1 rad diverges"
     )
     return replace(chosen.chain, remarks=(*chosen.chain.remarks, text))
 
 
-def _reason(chosen: Candidate, mode: int, error: float) -> str:
+def _reason(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> str:
     """Why a candidate is chosen."""
-    steps = chosen.chain.steps
+    steps, links = chosen.chain.steps, "the fewest links" if len({one.links for one in rows}) > 1 else "the links given"
     assert steps
-    text = f"For {with_unit(steps.step, 's')} in {steps.engine} {steps.integrator}: the fewest links within "
-    text += f"{per_cent(error)} up to mode {mode}"
-    return text + (", with the least armature that runs." if chosen.beta else ", without armature.")
+    text = (
+        f"For {with_unit(steps.step, 's')} in {steps.engine} {steps.integrator}: {links}, within {per_cent(error)} up "
+    )
+    return f"{text}to mode {mode}, {'with the least armature that runs' if chosen.beta else 'without armature'}."
 
 
 def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
@@ -201,8 +206,8 @@ def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list
     if any(hinge.armature for joint in chain.joints for hinge in joint.hinges):
         bare = with_armature(chain, np.zeros(len(chain.unknowns(chain.axes[0]))))
     for axis in chain.axes:
-        run, file = (simulated_chain(one, steps.step, scheme, axis).modes for one in (chain, bare))
-        first, worst = int((file.file_hz == 0.0).sum()), (0.0, 1)
+        simulated, whole = (simulated_chain(one, steps.step, scheme, axis) for one in (chain, bare))
+        run, file, first, worst = simulated.modes, whole.modes, whole.rigid, (0.0, 1)
         for i, (_, time, both, more) in enumerate(zip(*step_errors(bare, chain, axis, mode), strict=True)):
             hertz, zeta = float(run.hz[first + i]), float(run.zeta[first + i])
             values = hertz / (1.0 + both), hertz, both, zeta - more, float(file.file_zeta[first + i]), zeta
@@ -217,7 +222,7 @@ def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list
         margins.append(
             Margin(name=name, size=worst[0], where=where, remedy="give a shorter step", fine=fine, limit=fine)
         )
-    return Table("As it runs", columns, rows), margins, warnings
+    return Table("As it runs", columns, rows, chain.remarks), margins, warnings
 
 
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
@@ -267,5 +272,6 @@ def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
     if chain.steps:
         ran, more, texts = _as_it_runs(chain, mode, error)
         tables, margins, warnings = [*tables, ran], [*margins, *more], [*warnings, *texts]
-    warnings += chain.remarks
+    else:
+        warnings += chain.remarks
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

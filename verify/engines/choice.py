@@ -71,7 +71,8 @@ def _checked(fit: Rayleigh, omega: Array, within: float, drag: bool) -> Rayleigh
     )
     raise InputError(
         f"damping: by {means} the ratio at {omega[worst] / (2.0 * np.pi):.4g} Hz deviates by "
-        f"{100.0 * fit.deviation[worst]:+.3g} %: {more}narrow the band or permit it, 'within {100.0 * abs(fit.deviation[worst]):.2g}%'"
+        f"{100.0 * fit.deviation[worst]:+.3g} %: {more}"
+        f"narrow the band or permit it by 'within {100.0 * abs(fit.deviation[worst]):.3g}%'"
     )
 
 
@@ -183,8 +184,7 @@ def step_errors(meant: RigidChain, run: RigidChain, axis: Axis, modes: int) -> t
     scheme, step = scheme_of(run.steps.engine, run.steps.integrator), run.steps.step
     plain = simulated_chain(meant, step, scheme, axis)
     after = plain.modes if run is meant else simulated_chain(run, step, scheme, axis).modes
-    first = int((plain.modal[0] == 0.0).sum())
-    part = slice(first, first + modes)
+    part = slice(plain.rigid, plain.rigid + modes)
     omega = plain.modal[0][part]
     space = omega / (2.0 * np.pi) / meant.exact_hz(axis, len(omega)) - 1.0
     zeta = meant.damping * omega / omega[0] if meant.compensated else plain.modes.file_zeta[part]
@@ -209,8 +209,9 @@ def largest_step(chain: Simulated, mode: int, within: float) -> float:
 
     Of frequency, relative, and of the damping ratio.
     """
-    number = mode + int((chain.modal[0] == 0.0).sum())
-    return min(0.5 * chain.limit, *(chain.step_for(number, 0.5 * within, damping=one) for one in (False, True)))
+    return min(
+        0.5 * chain.limit, *(chain.step_for(chain.rigid + mode, 0.5 * within, damping=one) for one in (False, True))
+    )
 
 
 def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, within: float = 0.01) -> RigidChain:
@@ -227,7 +228,7 @@ def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, 
         with suppress(InputError):
             found.append(largest_step(run, mode, within))
     text = f"time step: at most half the errors of {within:g} at mode {mode} and half the stability limit"
-    text += f", {with_unit(limit, 's')}" * (limit < inf)
+    text += f", {with_unit(limit, 's')}" * isfinite(limit)
     return replace(chain, steps=Steps(floored(min(found), 2), engine, setting), remarks=(*chain.remarks, text))
 
 

@@ -97,6 +97,7 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     if len(request.at) > 1:
         worst = max(float(abs(fit.deviation).max()) for fit in fits.values())
         means = "drag and dashpots" if drag else "dashpots alone"
+        worst = round(worst, 9)  # rounding
         remarks.append(f"damping by {means}, {per_cent(worst)} off what was asked at worst; Maxwell branches left out")
     chain = with_dashpots(
         replace(chain, remarks=tuple(remarks), compensated=request.compensated), times, float(f"{first:.12g}")
@@ -104,6 +105,6 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     if not (alpha := fits["bending"].drag):
         return chain
     run = simulated_chain(chain, 1.0, TRAPEZOIDAL)
-    shape = run.modal[2][:, int((run.modal[0] == 0.0).sum())]
+    shape = run.modal[2][:, run.rigid]
     # of unit modal mass: exact at mode 1, in shorter waves the rotation of the links adds to it
     return replace(chain, viscosity=alpha / float(shape @ replace(chain, viscosity=1.0).drag() @ shape))

@@ -176,6 +176,11 @@ class Simulated:
         return Modes(_hertz(file), _ratio(file), hertz, _ratio(s))
 
     @property
+    def rigid(self) -> int:
+        """Number of rigid motions, the first modes."""
+        return int((self.modal[0] == 0.0).sum())
+
+    @property
     def omega_max(self) -> float:
         """Highest undamped frequency, 1/s."""
         return float(self.modal[0][-1])
