@@ -3,7 +3,7 @@
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import hypot, inf, isfinite, pi
+from math import hypot, inf, isfinite, pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,16 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
-from verify.engines.choice import Candidate, choose, default_steps, largest_mode, step_errors, trade, with_armature
+from verify.engines.choice import (
+    Candidate,
+    choose,
+    default_steps,
+    floored,
+    largest_mode,
+    step_errors,
+    trade,
+    with_armature,
+)
 from verify.engines.damping import Asked, asked, damped
 from verify.engines.describe import describe
 from verify.engines.description import MOST_LINKS, RigidChain, Steps
@@ -34,7 +43,7 @@ COMPARED = "gregory", "half", "full", "rigid"
 AUTOMATIC = {"MuJoCo": ("implicitfast", "discrete")}
 """Integrators that are tried in turn where none is named; of other engines the first in `INTEGRATORS`."""
 NOTICED = 0.1
-"""Damping that is not meant, over that which is, from which it is named."""
+"""Damping that is not meant, over that which is and over the error of frequency, from which it is named."""
 MOST_TRIED = 30
 """Links beyond the fewest, one more at a time, among which those for a step are sought."""
 
@@ -128,26 +137,48 @@ def _for_step(
     armatures: bool,
 ) -> tuple[Candidate, list[Candidate]]:
     """(the candidate that is chosen, all of them) of chains without dashpots. Raises InputError with what would run."""
-    rows, best = list[Candidate](), 0.0
+    rows, remedies, largest = list[Candidate](), list[str](), (0.0, "")
     for steps in integrators:
         found = trade([damped(one, request, steps, drag=drag) for one in plain], steps, modes=mode, armatures=armatures)
         rows += found
         if chosen := choose(found, mode, error):
             return chosen, rows
         fine = [one.chain for one in found if len(one.space) >= mode and abs(one.space[mode - 1]) <= 0.5 * error]
-        best = max([best, *(each.steps.step for one in fine if (each := default_steps(one, steps, mode, error)).steps)])
-    step, number, first = integrators[0].step, largest_mode(rows, error), rows[0]
+        if fine:
+            largest = max(largest, (_largest_step(fine[0], steps, mode, error, armatures), steps.integrator))
+        if len(request.ratios) == 1 and request.ratios[0] and not (request.in_hz or request.compensated):
+            with suppress(InputError):
+                other = [damped(one, request._replace(compensated=True), steps) for one in plain]
+                good = choose(trade(other, steps, modes=mode), mode, error)
+                remedies += ["compensated dashpots, damping '... compensated'"] * bool(good)
+    step, number, first, last = integrators[0].step, largest_mode(rows, error), rows[0], rows[-1]
     span = " to ".join(str(n) for n in dict.fromkeys((plain[0].count, plain[-1].count)))
     named = ", ".join(f"{one.engine} {one.integrator}" for one in integrators)
-    text = f"step = {step!r}: in {named} no chain of {span} links runs within {per_cent(error)} up to mode {mode}"
+    text = f"step = {with_unit(step, 's', '.6g')}: in {named} no chain of {span} links runs within {per_cent(error)} "
+    text += f"up to mode {mode}"
     if not first.stable:
         text += f", {first.links} links diverge (omega_max h = {first.omega_max * step:.3g}, "
         text += f"limit {first.omega_max * first.limit:.3g})"
-    remedies = [f"give mode {number}"] * bool(number) + [f"a step of {with_unit(best, 's')}"] * bool(best)
+    if last.stable and len(last.space) >= mode:
+        errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
+        text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
     accurate = (2.0 * pi * step * first.chain.exact_hz(n_modes=mode)[-1]) ** 2 < 12.0 * error  # the trapezoidal rule
-    remedies += ["no in_space"] * first.chain.in_space
-    remedies += ["damping, with which armature runs"] * bool(armatures and accurate and not first.chain.damping)
-    raise InputError(f"{text}: {' or '.join(remedies or ['give more links'])}")
+    bare = armatures and accurate and not (first.chain.damping or first.chain.in_space)
+    remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
+    remedies = [f"mode {number}"] * bool(number) + remedies + ["damping, with which armature runs"] * bool(bare)
+    remedies += ["hinges in one plane"] * first.chain.in_space
+    raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
+
+
+def _largest_step(chain: RigidChain, steps: Steps, mode: int, error: float, armatures: bool) -> float:
+    """Largest step, s, below that of `steps`, with which a chain runs within an error up to a mode, in two digits."""
+    begun = default_steps(chain, steps, mode, error).steps
+    low, high = begun.step if begun else 0.0, steps.step
+    for _ in range(10 if 0.0 < low < high else 0):
+        middle = sqrt(low * high)
+        found = trade([chain], steps._replace(step=middle), modes=mode, armatures=armatures)
+        low, high = (middle, high) if choose(found, mode, error) else (low, middle)
+    return floored(low, 2) if low < high else 0.0
 
 
 def _remarked(chosen: Candidate) -> RigidChain:
@@ -174,7 +205,7 @@ def _reason(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -
 def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
     """Numbers of links next to the chosen one, with what space and time cost at a mode."""
     columns = [Column("links"), Column("integrator"), Column("armature, h² k", format=".3g")]
-    columns += [Column("omega_max h", format=".3g"), Column("step limit", "s", ".3g", prefix=True)]
+    columns += [Column("step limit", "s", ".3g", prefix=True)]
     names = ("space", "time", "error", "damping added")
     columns += [*(Column(name, format="+.2g", percent=True) for name in names), Column("it")]
     each = list[tuple[object, ...]]()
@@ -185,8 +216,7 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
         figures = (float(values[mode - 1]) for values in (one.space, one.time, one.error, one.numerical))
         limit = one.limit if isfinite(one.limit) else None
         shown = [value if isfinite(value) and one.stable else None for value in figures]
-        top = one.omega_max * one.chain.steps.step
-        each.append((one.links, one.chain.steps.integrator, one.beta or None, top, limit, *shown, fate))
+        each.append((one.links, one.chain.steps.integrator, one.beta or None, limit, *shown, fate))
     note = f"Errors of frequency and damping ratio at mode {mode} in bending; small vibration about rest."
     return Table("Links for the step", columns, each, [note])
 
@@ -211,10 +241,11 @@ def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list
         for i, (_, time, both, more) in enumerate(zip(*step_errors(bare, chain, axis, mode), strict=True)):
             hertz, zeta = float(run.hz[first + i]), float(run.zeta[first + i])
             values = hertz / (1.0 + both), hertz, both, zeta - more, float(file.file_zeta[first + i]), zeta
-            rows.append((axis, i + 1, *(float(value) if isfinite(value) else None for value in values)))
+            shown = (round(float(value), 12) + 0.0 if isfinite(value) else None for value in values)  # no -0
+            rows.append((axis, i + 1, *shown))
             size = hypot(time, more)
             worst = max(worst, (size if isfinite(size) else inf, i + 1))
-            if abs(more) > NOTICED * abs(zeta - more) + 1e-6:
+            if abs(more) > NOTICED * max(zeta - more, error):
                 text = f"{per_cent(zeta)} damping at mode {i + 1} in {axis} in place of {per_cent(zeta - more)}"
                 warnings.append(f"{text}, by the integrator")
         name, fine = f"time step of {with_unit(steps.step, 's')}", max(error, FINE)
