@@ -3,7 +3,7 @@
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import hypot, inf, isfinite, pi, sqrt
+from math import hypot, inf, isfinite
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,6 @@ from verify.engines.choice import (
     Candidate,
     choose,
     default_steps,
-    floored,
     largest_mode,
     step_errors,
     trade,
@@ -78,34 +77,24 @@ def engine_chain(
     own = end.endswith((".xml", ".mjcf"))
     engine = engine or "MuJoCo" * (own and path is not None)
     make = partial(describe, beam, wall=wall, in_space=in_space)
-    tables, why = list[Table](), ""
-    if step is not None:
+    names, highest = end.endswith((".json", ".csv")), 1 if request.in_hz else int(max(request.at))
+    if step is None:
+        count = count or fewest(beam, max(mode, highest), error, wall, in_space)
+        steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
+        chain = damped(make(count), request, steps, drag=own)
+        result = _chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
+    else:
         check_number("step", step, "s", above=0)
         if not engine:
             raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
-        counts = [count] if count else _counts(beam, max(mode, _highest(request)), error, wall, in_space)
-        heavy = own or end.endswith((".json", ".csv"))
-        chosen, rows = _for_step(
-            [make(n) for n in counts], request, _steps(engine, step, True), mode, error, own, heavy
-        )
-        chain, tables, why = (
-            _remarked(chosen),
-            [_trade_table(rows, chosen, mode, error)],
-            _reason(rows, chosen, mode, error),
-        )
-    else:
-        count = count or fewest(beam, max(mode, _highest(request)), error, wall, in_space)
-        steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
-        chain = damped(make(count), request, steps, drag=own)
-        chain = default_steps(chain, steps, mode, error) if steps else chain
-    result = _chain_result(chain, mode, error)
-    result = replace(result, tables=[*result.tables, *tables], summary=f"{result.summary} {why}".rstrip())
+        plain = [make(n) for n in ([count] if count else _counts(beam, max(mode, highest), error, wall, in_space))]
+        chosen, rows = _for_step(plain, request, _steps(engine, step, True), mode, error, own, own or names)
+        result, chain = _chain_result(chosen.chain, mode, error), chosen.chain
+        links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
+        why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
+        table = _trade_table(rows, chosen, mode, error)
+        result = replace(result, tables=[*result.tables, table], summary=f"{result.summary[:-1]}, {why}")
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
-
-
-def _highest(request: Asked) -> int:
-    """The highest mode that a request of damping names."""
-    return 1 if request.in_hz else int(max(request.at))
 
 
 def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> list[int]:
@@ -144,8 +133,9 @@ def _for_step(
         if chosen := choose(found, mode, error):
             return chosen, rows
         fine = [one.chain for one in found if len(one.space) >= mode and abs(one.space[mode - 1]) <= 0.5 * error]
-        if fine:
-            largest = max(largest, (_largest_step(fine[0], steps, mode, error, armatures), steps.integrator))
+        for one in fine[:1]:
+            begun = default_steps(one, steps, mode, error).steps
+            largest = max(largest, (begun.step if begun else 0.0, steps.integrator))
         if len(request.ratios) == 1 and request.ratios[0] and not (request.in_hz or request.compensated):
             with suppress(InputError):
                 other = [damped(one, request._replace(compensated=True), steps) for one in plain]
@@ -162,52 +152,17 @@ def _for_step(
     if last.stable and len(last.space) >= mode:
         errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
         text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
-    accurate = (2.0 * pi * step * first.chain.exact_hz(n_modes=mode)[-1]) ** 2 < 12.0 * error  # the trapezoidal rule
-    bare = armatures and accurate and not (first.chain.damping or first.chain.in_space)
     remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
-    remedies = [f"mode {number}"] * bool(number) + remedies + ["damping, with which armature runs"] * bool(bare)
-    remedies += ["hinges in one plane"] * first.chain.in_space
+    remedies = [f"mode {number}"] * bool(number) + remedies + ["hinges in one plane"] * first.chain.in_space
     raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
-
-
-def _largest_step(chain: RigidChain, steps: Steps, mode: int, error: float, armatures: bool) -> float:
-    """Largest step, s, below that of `steps`, with which a chain runs within an error up to a mode, in two digits."""
-    begun = default_steps(chain, steps, mode, error).steps
-    low, high = begun.step if begun else 0.0, steps.step
-    for _ in range(10 if 0.0 < low < high else 0):
-        middle = sqrt(low * high)
-        found = trade([chain], steps._replace(step=middle), modes=mode, armatures=armatures)
-        low, high = (middle, high) if choose(found, mode, error) else (low, middle)
-    return floored(low, 2) if low < high else 0.0
-
-
-def _remarked(chosen: Candidate) -> RigidChain:
-    """The chain with what holds for its armature in its remarks."""
-    if not chosen.beta:
-        return chosen.chain
-    text = (
-        f"armature {chosen.beta:.3g} h^2 k - h c/2: for this step alone, with the dashpots, in one plane, joint "
-        "angles up to 0.3 rad (measured at h omega_max up to 12); undamped or about several axes 0.1 rad diverges"
-    )
-    return replace(chosen.chain, remarks=(*chosen.chain.remarks, text))
-
-
-def _reason(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> str:
-    """Why a candidate is chosen."""
-    steps, links = chosen.chain.steps, "the fewest links" if len({one.links for one in rows}) > 1 else "the links given"
-    assert steps
-    text = (
-        f"For {with_unit(steps.step, 's')} in {steps.engine} {steps.integrator}: {links}, within {per_cent(error)} up "
-    )
-    return f"{text}to mode {mode}, {'with the least armature that runs' if chosen.beta else 'without armature'}."
 
 
 def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
     """Numbers of links next to the chosen one, with what space and time cost at a mode."""
     columns = [Column("links"), Column("integrator"), Column("armature, h² k", format=".3g")]
     columns += [Column("step limit", "s", ".3g", prefix=True)]
-    names = ("space", "time", "error", "damping added")
-    columns += [*(Column(name, format="+.2g", percent=True) for name in names), Column("it")]
+    columns += [Column(name, format="+.2g", percent=True) for name in ("space", "time", "error", "damping added")]
+    columns += [Column("it")]
     each = list[tuple[object, ...]]()
     for one in (row for row in rows if abs(row.links - chosen.links) <= 2 and len(row.space) >= mode):
         assert one.chain.steps
@@ -226,10 +181,10 @@ def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list
     steps = chain.steps
     assert steps
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".6g") for name in ("meant", "simulated"))]
-    columns += [Column("error", format="+.2g", percent=True)]
+    names = ("damping meant", "damping of the file", "damping simulated")
     columns += [
-        Column(name, format=".3g", percent=True)
-        for name in ("damping meant", "damping of the file", "damping simulated")
+        Column("error", format="+.2g", percent=True),
+        *(Column(name, format=".3g", percent=True) for name in names),
     ]
     rows, margins, warnings = list[tuple[object, ...]](), list[Margin](), list[str]()
     scheme, bare = scheme_of(*steps[1:]), chain
@@ -296,6 +251,7 @@ def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
             )
         ]
     rule = f", {wall_label(chain.wall)}" if held else ""
+    rule += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}" if chain.steps else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and chain.beam.attached:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")

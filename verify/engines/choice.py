@@ -12,6 +12,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
+from verify.analysis.verdict import per_cent
 from verify.arrays import Array
 from verify.blas import one_blas_thread
 from verify.engines.description import Axis, Joint, RigidChain, Steps
@@ -24,6 +25,12 @@ MARGIN = 0.9
 """Largest fraction of the stability limit: at the limit a motion does not decay."""
 FOURTH_ORDER = 1.0 / 12.0
 """Newmark's beta whose frequencies are of order 4: less armature costs accuracy and wins no step."""
+
+
+ARMATURE = (
+    "armature {:.3g} h^2 k {} h c/2: for this step alone, with the dashpots, in one plane, joint angles up to 0.3 rad "
+    "(measured at h omega_max up to 12); undamped or about several axes 0.1 rad diverges"
+)
 
 
 class Rayleigh(NamedTuple):
@@ -159,6 +166,9 @@ def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatur
         for beta in betas if heavy and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS) else betas[:1]:
             inertias = armature(every, beta) if beta else np.zeros(1)
             made = with_armature(chain, inertias) if beta else chain
+            if beta:
+                text = ARMATURE.format(beta, "-" if scheme is IMPLICIT_DASHPOTS else "+")
+                made = replace(made, remarks=(*chain.remarks, text))
             run = simulated_chain(made, step, scheme) if beta else every
             # beta has its margin already, and its limit is a few percent beyond its own step
             stable = step <= (1.0 if beta else MARGIN) * run.limit
@@ -227,8 +237,8 @@ def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, 
         found.append(0.5 * run.limit)
         with suppress(InputError):
             found.append(largest_step(run, mode, within))
-    text = f"time step: at most half the errors of {within:g} at mode {mode} and half the stability limit"
-    text += f", {with_unit(limit, 's')}" * isfinite(limit)
+    text = f"time step: at most half the errors of {per_cent(within)} at mode {mode}"
+    text += f" and half the stability limit, {with_unit(limit, 's')}" * isfinite(limit)
     return replace(chain, steps=Steps(floored(min(found), 2), engine, setting), remarks=(*chain.remarks, text))
 
 
