@@ -6,7 +6,7 @@ Everything holds for small vibration about rest.
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from math import exp, floor, inf, isfinite, log10, sqrt
+from math import ceil, exp, floor, inf, isfinite, log10, sqrt
 from typing import NamedTuple
 
 import msgspec
@@ -79,7 +79,7 @@ def _checked(fit: Rayleigh, omega: Array, within: float, drag: bool) -> Rayleigh
     raise InputError(
         f"damping: by {means} the ratio at {omega[worst] / (2.0 * np.pi):.4g} Hz deviates by "
         f"{100.0 * fit.deviation[worst]:+.3g} %: {more}"
-        f"narrow the band or permit it by 'within {100.0 * abs(fit.deviation[worst]):.3g}%'"
+        f"narrow the band or permit it by 'within {ceil(100.0 * abs(fit.deviation[worst]))}%'"
     )
 
 
