@@ -1,7 +1,7 @@
 """Natural frequencies by Exudyn, MuJoCo and PyElastica, as the tests of `verify compare` hold them.
 
     python -m benchmarks.frequency_lists FOLDER
-    python -m benchmarks.frequency_lists sets [STEP]
+    python -m benchmarks.frequency_lists sets [STEP [PART OF A NAME]]
 
 The steel cantilever and the paper's beam, recorded with Exudyn 1.13.6, MuJoCo 4.0.0 and PyElastica 1.0.0. `sets` counts
 the statuses of larger sets of lists than the tests have, every STEP-th of them, and prints lists that are surely wrong.
@@ -18,16 +18,18 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from tests.reference.closed_lists import pinned_timoshenko, written
-from tests.reference.discrete_beams import rigid_links, varying_beam
+from tests.reference.closed_lists import BETAS, euler, pinned_timoshenko, written
+from tests.reference.discrete_beams import half_links, lumped_elements, rigid_links, tensioned, varying_beam
 from verify.compare.compare import Options, compare
 from verify.compare.reading import listed
 from verify.engines.base import ENGINES, chain_of
 from verify.exact.closed_forms import frequency_hz
 from verify.fem_beam import HermiteModel
 from verify.problem.beam import Beam, in_plane
+from verify.problem.point_attachments import PointMass
 from verify.problem.supports import Support
 from verify.segment_model import SegmentModel
 from verify.settings import Theory
@@ -131,6 +133,7 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | 
     ):
         hertz = factor * rigid_links(thin, 20, wall)[:n]
         yield "wrong modulus", thin, hertz.tolist(), digits, count, {name}
+    yield from causes(thin)
     sizes = product((1.2, 1.5, 3.3), (0.01, 0.1), PAIRS, THEORIES, (6, 9))
     for ratio, thickness, pair, theory, n in sizes:
         bar = Beam(length=1.0, width=ratio * thickness, thickness=thickness, youngs_modulus=68e9, density=2700.0,
@@ -143,10 +146,46 @@ def sets() -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | 
             yield "both planes, EI/l at the wall", bar, np.sort(both)[:n].tolist(), 6, 20, {"full"}
 
 
-def judge(step: int) -> None:
-    """Print the statuses by set, and the lists that are identified as what they are not."""
+def causes(thin: Beam) -> Iterator[tuple[str, Beam, list[float], int, int | None, set[str | None]]]:
+    """As `sets`: axial force, half links, bodies, twins and missing modes of a cantilever."""
+    length = thin.length
+    taut = Beam(length=0.6, width=0.02, thickness=0.0008, youngs_modulus=200e9, density=7850.0, tension=120.0)
+    for tension, n, digits in product((120.0, 119.0, 37.0, 0.0, 300.0), (5, 8), (4, 6)):
+        yield "tension", taut, tensioned(taut, tension, n).tolist(), digits, None, {None}
+    for pair, size, n, digits in product((PAIRS[0], PAIRS[2]), (7, 10, 24), (4, 6), (5, 7)):
+        beam = Beam(length=0.45, width=0.03, thickness=0.004, youngs_modulus=206e9, density=7850.0, supports=pair)
+        yield "half links", beam, half_links(beam, size)[:n].tolist(), digits, None, {None}
+    for size, share, digits in product((8, 12, 20), (0.25, 0.5, 1.0), (5, 7)):
+        body, node = PointMass(position=share * length, mass=0.2), round(share * size)
+        hertz = lumped_elements(thin, size, bodies=[(node, body.mass)])[:5]
+        yield "lumped with a mass", replace(thin, mass=(body,)), hertz.tolist(), digits, None, {None}
+    for mass, n, digits in product((0.02, 0.2, 1.0), (4, 6), (5, 7)):
+        loaded = replace(thin, mass=(PointMass(position=length, mass=mass),))
+        yield (
+            "twin: a mass at the end",
+            thin,
+            HermiteModel(loaded, 80).modes(n).frequencies_hz.tolist(),
+            digits,
+            None,
+            set(),
+        )
+    for size, n, digits in product((15, 40), (5, 7), (5, 7)):
+        hertz = 1.3 * rigid_links(thin, size)[:n] * (1.0 if n == 5 else 1.05)
+        yield "twin: factor and wall", thin, hertz.tolist(), digits, None, {"half"}
+    for first, n, wall in product((1, 2, 3), (2, 3, 5, 8), (None, 2.0, 1.0)):
+        whole = (
+            euler(thin, [*BETAS, *((i - 0.5) * pi for i in range(7, 12))])
+            if wall is None
+            else rigid_links(thin, 30, wall)
+        )
+        walls: set[str | None] = {"half"} if wall == 2.0 else {"full"} if wall else {None}
+        yield "leading modes missing", thin, whole[first : first + n].tolist(), 6, None, walls
+
+
+def judge(step: int, part: str = "") -> None:
+    """Print the statuses by set, and the lists that are identified as what they are not; `part` of a set's name."""
     tally: Counter[tuple[str, str, str]] = Counter()
-    for name, beam, hertz, digits, count, walls in islice(sets(), 0, None, step):
+    for name, beam, hertz, digits, count, walls in islice((one for one in sets() if part in one[0]), 0, None, step):
         cells = [f"{value:.{digits - 1}e}" for value in hertz]
         source = listed("list", [float(cell) for cell in cells], cells)
         result = compare(SimpleNamespace(name="beam", beam=beam), source, None, Options(count=count))
@@ -174,6 +213,6 @@ def main(folder: Path) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1] == "sets":
-        judge(int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+        judge(int(sys.argv[2]) if len(sys.argv) > 2 else 1, *sys.argv[3:4])
     else:
         main(Path(sys.argv[1]))

@@ -87,7 +87,7 @@ BEAMS = [
     (beam(mass=[PointMass(position=0.0, mass=0.1)]), r"beam\.mass\[0\]\.position = 0\.0 m is on a pinned support"),
     (lambda: PointMass(position=0.1), r"beam\.mass at position = 0\.1"),
     (lambda: PointMass(position=-0.1, mass=1.0), r"beam\.mass\.position = -0\.1"),
-    (lambda: PointSpring(position=0.1), r"beam\.spring at position = 0\.1 has none: give stiffness or rotational"),
+    (lambda: PointSpring(position=0.1), r"beam\.spring at position = 0\.1 has no effect: give one of stiffness, rotational"),
     (lambda: PointSpring(position=0.1, stiffness=-3.0), r"beam\.spring\.stiffness = -3\.0"),
     (lambda: PointForce(position=-0.1), r"force\.position = -0\.1: give a finite number of at least 0"),
     (lambda: PointForce(position=0.1, amplitude=nan), r"force\.amplitude = nan"),

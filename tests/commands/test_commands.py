@@ -87,7 +87,7 @@ REFUSED = [
     ("table bare.toml --csv --json", "exclude each other"),
     ("choose bare.toml --mode 2 --error 5", "per cent"),
     ("choose bare.toml --mode 0 --error 1%", "mode = '0'"),
-    ("choose bare.toml --mode 1,3 --error 1%", "one mode, or all of a range"),
+    ("choose bare.toml --mode 1,3 --error 1%", "the last mode, or all of a range"),
     ("choose bare.toml --mode 2 --error 1% wall", "RULE=VALUE"),
     ("quantities nothing-like-it", "no quantity matches"),
     ("scenes show nowhere", "neither a packaged scene nor a file"),

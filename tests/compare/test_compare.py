@@ -139,7 +139,7 @@ class TestFaults:
 
     @pytest.mark.parametrize("model", ["segment", "fem"])
     def test_compliant_clamp(self, model):
-        soft = varied(CANTILEVER, ("left",), 37.0)
+        soft = varied(CANTILEVER, "clamp", ("left",), 37.0)
         built = SegmentModel(soft, 30, wall="half") if model == "segment" else HermiteModel(soft, 30)
         modes = built.modes(8)
         result = compared(CANTILEVER, modes.frequencies_hz, count=30)

@@ -63,7 +63,7 @@ def test_first_link_fixed_and_its_adapted_joints(tmp_path, frame):
 def test_both_planes(tmp_path):
     path, out, best = tmp_path / "beam.xml", tmp_path / "out.xml", describe(STEEL, 14, in_space=True)
     write(describe(STEEL, 14, wall="full", in_space=True, damping=0.02), path)
-    bending, width = judge_file(path, STEEL, corrected=out).data["chains"]
+    bending, width, _ = judge_file(path, STEEL, corrected=out).data["chains"]
     assert width["stiffness"] / bending["stiffness"] == pytest.approx(25.0)
     expected = [*best.frequencies_hz("bending", 3), *best.frequencies_hz("width", 1)]
     assert mujoco_hz(out)[:4] == pytest.approx(sorted(expected), rel=1e-9)
@@ -97,7 +97,7 @@ def test_default_class_and_tip_mass(tmp_path):
     assert abs(found["corrected_error"][0]) < 2e-6
     bare = judge_file(out, STEEL)
     assert bare.data["chains"][0]["faults"] == ["bodies 0.4 kg heavier than those of the beam"]
-    assert [margin.remedy[:14] for margin in bare.margins] == ["give the links"]
+    assert [margin.remedy[:14] for margin in bare.margins if margin.size > 1e-4] == ["give the links"]
     assert out.read_text().count("stiffness=") == 4
 
 
@@ -130,12 +130,13 @@ def test_public_whip_of_point_masses_under_gravity(tmp_path):
     """mosesnah-shared/whip-project-targeting, models/25DOF_whip.xml: a point mass at the far joint of each link."""
     joint = '<joint name="j{i}" axis="0 -1 0" stiffness="0.242" damping="0.092"/>'
     geom = '<geom type="sphere" pos="0 0 -0.072" size="0.02" mass="0.012" contype="0" conaffinity="0"/>'
-    found, warnings, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
+    found, _, out = judged(tmp_path, chain_text(25, joint, geom, "0 0 -0.072"))
     assert [text.split(" ")[0] for text in found["faults"]] == ["wall", "inertia", "centre"]
     assert (found["error"][0], found["corrected_error"][0]) == pytest.approx((-0.0748, -0.0384), abs=1e-4)
     weight = 25 * 0.012 * 9.81 * (25 * 0.072) ** 2 / (0.242 * 0.072)
-    assert f"its weight is {weight:.3g} EI/L^2" in warnings[0]
-    assert judge_file(out, None).margins[0].remedy == "give the links the mass of the beam, m l^2/12 about l/2"
+    under = judge_file(out, None).margins
+    assert f"{weight:.3g} EI/L^2" in under[1].failure
+    assert under[2].remedy == "give the links the mass of the beam, m l^2/12 about l/2"
 
 
 @pytest.mark.parametrize(("pose", "angle", "about", "axis"), [
@@ -177,7 +178,9 @@ def test_half_a_link_fixed_at_the_wall_is_right_as_it_is(tmp_path):
             f'<body pos="{(0.5 + 0.5 * (i > 1)) / 14 * (i > 0)} 0 0">{joint * (i > 0)}<geom type="box" pos="{at} 0 0" '
         )
         text += f'size="{at} .02 .004" density="7850" contype="0" conaffinity="0"/>'
-    found, warnings, out = judged(tmp_path, f"<mujoco><worldbody>{text}{'</body>' * 15}</worldbody></mujoco>")
+    found, warnings, out = judged(
+        tmp_path, f"<mujoco><option timestep='1e-5'/><worldbody>{text}{'</body>' * 15}</worldbody></mujoco>"
+    )
     assert (found["faults"], len(warnings)) == ([], 1)
     assert found["rule"] == "fixed link in series with its joint at the wall"
     assert found["stiffness"] == pytest.approx(358.4, rel=1e-9)
@@ -211,7 +214,8 @@ END = HINGE.format(x=0.21, k=5, more="")
     (HINGE.format(x=0, k=0, more=""), "no hinge has a stiffness"),
     (HINGE.format(x=0, k=5, more=""), "two links or more"),
     (PAIR.format("").replace("axis", 'type="slide" axis', 1), "a slide or a free base"),
-    (PAIR.format(END).replace("axis", 'armature="1e-6" axis', 1), "has an armature"),
+    (PAIR.format(END) + '</worldbody><tendon><fixed damping="1"><joint joint="j0" coef="1"/></fixed></tendon><worldbody>',
+     "has a tendon"),
     (PAIR.format(END.replace(" 0 0", " .1 0", 1)), "no straight line"),
     (PAIR.format("") + '</worldbody><equality><joint joint1="j0"/></equality><worldbody>', "has an equality"),
     ("<body><joint/><geom/></body>", "size 0 must be positive in geom"),

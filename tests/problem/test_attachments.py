@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from msgspec.structs import replace
 
 from verify.analytic_modes import ExactModel
-from verify.engines.description import describe
+from verify.engines.describe import describe
 from verify.errors import InputError
 from verify.fem_beam import HermiteModel
 from verify.identify.beam import frequencies

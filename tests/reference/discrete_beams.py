@@ -38,13 +38,18 @@ def links_without_inertia(beam, n):
     return hertz(chain.modes[0])
 
 
-def lumped_elements(beam, n, rotary=0.0):
-    """Hermite elements, half of each mass at either node with `rotary` m l^2; without it rotations are condensed."""
+def lumped_elements(beam, n, rotary=0.0, bodies=()):
+    """Hermite elements, half of each mass at either node with `rotary` m l^2; without it rotations are condensed.
+
+    `bodies`: (node, mass).
+    """
     elements = Elements(beam, np.linspace(0.0, beam.length, n + 1))
     share = np.ones(n + 1)
     share[[0, n]] = 0.5
     m, k, free = beam.mass_per_length * beam.length / n, elements.bending, elements.free
     elements.mass = np.diag(np.ravel(m * share[:, None] * [1.0, 2 * rotary * (beam.length / n) ** 2]))
+    for node, mass in bodies:
+        elements.mass[2 * node, 2 * node] += mass
     if rotary:
         return hertz(elements.modes[0])
     moves, turns = ([i for i in free if i % 2 == parity] for parity in (0, 1))
@@ -96,3 +101,27 @@ def varying_beam(length, stiffness, mass, left, right, crack=None, n=120):
         fixed |= {"free": set(), "pinned": {2 * node}, "clamped": {2 * node, 2 * node + 1}}[support]
     free = np.array([i for i in range(size) if i not in fixed and (crack or i < size - 1)])
     return hertz(eigh(stiff[np.ix_(free, free)], heavy[np.ix_(free, free)], eigvals_only=True))
+
+
+def half_links(beam, n):
+    """Links with n joints EI/l: half links at both ends, the first fixed at a clamped end; each its own uniform bar."""
+    part, m = beam.length / n, beam.mass_per_length
+    corners = np.concatenate([[0.0], (np.arange(n) + 0.5) * part, [beam.length]])
+    stiff, heavy = np.zeros((n + 2, n + 2)), np.zeros((n + 2, n + 2))
+    for i, size in enumerate(np.diff(corners)):
+        heavy[i : i + 2, i : i + 2] += m * size * np.array([[2, 1], [1, 2]]) / 6
+    for i in range(1, n + 1):
+        a, b = corners[i] - corners[i - 1], corners[i + 1] - corners[i]
+        jump = np.array([1 / a, -1 / a - 1 / b, 1 / b])
+        stiff[i - 1 : i + 2, i - 1 : i + 2] += beam.bending_stiffness / part * np.outer(jump, jump)
+    held = {"clamped": [0, 1], "pinned": [0], "free": []}
+    fixed = held[beam.supports[0]] + [n + 1 - i for i in held[beam.supports[1]]]
+    free = [i for i in range(n + 2) if i not in fixed]
+    return hertz(eigh(stiff[np.ix_(free, free)], heavy[np.ix_(free, free)], eigvals_only=True))
+
+
+def tensioned(beam, tension, n):
+    """Pinned beam under an axial force (Weaver, Timoshenko and Young, Vibration Problems in Engineering, 1990)."""
+    k = np.arange(1, n + 1) * np.pi / beam.length
+    squares = (beam.bending_stiffness * k**4 + tension * k**2) / beam.mass_per_length
+    return np.sqrt(squares) / (2 * np.pi)

@@ -23,7 +23,6 @@ LAW_FROM = 60
 EVERY, FINE, COARSE, WINDOW = 60, 1.05, 1.5, 20
 """Size up to which a scan tries every size; larger ones are 5 % apart, beyond `LARGEST_WITHOUT_LAW` 50 %.
 Number of consecutive sizes to be within the limit: errors alternate with the places of steps within links."""
-LOWER_MODES = 100  # highest mode below which all lower modes are checked
 ROUNDING = 1e-12  # smallest error above rounding
 
 PROVEN = "all larger N are within the limit by the discrete dispersion"
@@ -47,10 +46,8 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 
     variant: Variant
     size: Sufficient
-    lower: tuple[int, ...]
-    """Lower modes whose error exceeds the limit at this size; empty where all modes of a range are required."""
     unknowns: int
-    error: float  # signed relative frequency error of the mode that requires the size
+    error: float  # signed relative frequency error of the mode that requires the size, the largest of the modes asked
     expected_error: float | None
     """`error` by the error law; None without a law (steps, attachments, settings, modes beyond the lower branch)."""
     run_time_s: float  # median of warm solves, assembly included
@@ -142,46 +139,43 @@ def _between(within: Within, low: int, high: int) -> int:
 
 
 def choose(
-    cache: SolutionCache, mode: Modes, error: float, rules: Rules | None = None
+    cache: SolutionCache, modes: range, error: float, rules: Rules | None = None
 ) -> tuple[list[Choice], dict[str, str]]:
     """(sufficient size and cost of every discrete model with these rules, reason by name for skipped models).
 
-    Includes the rules of the literature for this beam (`Rules.alternatives`). Raises InputError.
+    The errors of all `modes` are within `error`. Includes the rules of the literature for this beam
+    (`Rules.alternatives`). Raises InputError.
     """
     rules, beam, names = rules or Rules(), cache.beam, []
     left_out = rules.without_effect(beam)
     for model in discrete():
         try:
             if model.name not in MODELS.built_in:
-                sufficient_size(cache, model.name, mode, error)
+                sufficient_size(cache, model.name, modes, error)
             names.append(model.name)
         except InputError as problem:
             left_out[model.name] = str(problem)
-    sizes = {one: sufficient_size(cache, one.model, mode, error, one.settings) for one in rules.variants(names)}
+    sizes = {one: sufficient_size(cache, one.model, modes, error, one.settings) for one in rules.variants(names)}
     for one in rules.alternatives(beam):
         own = max((size.count for same, size in sizes.items() if same.model == one.model), default=0)
         try:
             if one not in sizes:
                 most = max(LARGEST_ALTERNATIVE, 5 * own)
-                sizes[one] = sufficient_size(cache, one.model, mode, error, one.settings, most)
+                sizes[one] = sufficient_size(cache, one.model, modes, error, one.settings, most)
         except InputError as problem:
             left_out[one.title] = str(problem)
-    highest = mode[-1] if isinstance(mode, range) else mode
 
     def solver(one: Variant, count: int) -> Callable[[], object]:
-        return lambda: MODELS[one.model].build(beam, count, **dict(one.settings)).modes(highest)
+        return lambda: MODELS[one.model].build(beam, count, **dict(one.settings)).modes(modes[-1])
 
     times = interleaved_medians([solver(one, size.count) for one, size in sizes.items()])
     choices = []
     for (one, size), seconds in zip(sizes.items(), times, strict=True):
         law = not one.settings and beam.uniform and one.model in LAWS and has_law(beam, size.mode, size.count)
-        below = range(1, size.mode if not isinstance(mode, range) and size.mode <= LOWER_MODES else 1)
-        errors = {n: cache.error_or_reason(one.model, size.count, n, one.settings)[0] for n in below}
         built = MODELS[one.model].build(beam, size.count, **dict(one.settings))
         choice = Choice(
             variant=one,
             size=size,
-            lower=tuple(n for n, off in errors.items() if off is not None and abs(off) > error),
             unknowns=built.n_elastic + beam.rigid_motions,
             error=cache.frequency_error(one.model, size.count, size.mode, one.settings),
             expected_error=expected_error(one.model, beam, size.mode, size.count) if law else None,

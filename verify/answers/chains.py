@@ -63,8 +63,8 @@ def engine_chain(
 ) -> Result:
     """Joints and links of a beam as a chain of rigid bodies, with the frequency errors of exactly this chain.
 
-    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` at `mode`. `wall`: rule of the
-    joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request in
+    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` up to `mode`. `wall`: rule
+    of the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request in
     words (`engines.damping.asked`). `step`, s, of `engine` "NAME" or "NAME:INTEGRATOR": chooses links, integrator and
     armature by which the chain runs, with all errors up to `mode`, of the damping ratio too, within `error`. Without
     it, the file of an engine has a step of `engines.choice.default_steps`. `path`: file to write, .xml (MJCF), .sdf,
@@ -212,12 +212,12 @@ def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list
 
 
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
-    """The smallest number of links that is within the error at a mode, and so is the next one tried."""
+    """The smallest number of links that is within the error at all modes up to one, and so is the next one tried."""
     count, first = max(len(beam.pieces), mode + 1, 2), 0
     while count <= MOST_LINKS:
         tried = describe(beam, count, wall=wall, in_space=in_space)
         errors = [tried.errors(axis, mode) for axis in tried.axes]
-        worst = max(abs(error_by_mode[-1]) if len(error_by_mode) >= mode else 1.0 for error_by_mode in errors)
+        worst = max(float(abs(one).max()) if len(one) >= mode else 1.0 for one in errors)
         if worst <= error and first:
             return first
         first = count if worst <= error else 0

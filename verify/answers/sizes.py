@@ -17,16 +17,18 @@ from verify.validation import check_integer, check_number
 
 @one_blas_thread()
 def choose(beam: AnyBeam, mode: int | range, error: float, rules: Rules | Mapping[str, Any] | None = None) -> Result:
-    """Smallest number of segments and of elements from which on the frequency error is at most `error`, and their time.
+    """Smallest numbers of segments and elements from which on the errors of modes are at most `error`, and their time.
 
     `beam`: a beam, the name of a packaged scene, the path of one, or a phrase 'beam: 1 m x 40 x 8 mm steel'. `mode`:
-    from 1, or all of a range. `error`: relative. `rules`: settings of the models, {"wall": ("half", "gregory")}.
-    A row of the table, `tables[0].records()`, is a model. Raises InputError.
+    all modes up to it, numbered from 1, or those of a range. `error`: relative. `rules`: settings of the models,
+    {"wall": ("half", "gregory")}. A row of the table, `tables[0].records()`, is a model. Raises InputError.
     """
-    first_mode, last = (mode.start, mode.stop - 1) if isinstance(mode, range) else (mode, mode)
-    if isinstance(mode, range) and (mode.step != 1 or not 0 < first_mode <= last):
-        raise InputError(f"mode = {mode!r}: give one mode, or all of a range(1, 13), numbered from 1")
-    check_integer("mode", last, 1)
+    if not isinstance(mode, range):
+        check_integer("mode", mode, 1)
+        mode = range(1, mode + 1)
+    first_mode, last = mode.start, mode.stop - 1
+    if mode.step != 1 or not 0 < first_mode <= last:
+        raise InputError(f"mode = {mode!r}: give the last mode, or all of a range(5, 13), numbered from 1")
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
     cache, given = SolutionCache(named(beam).beam), rules if isinstance(rules, Rules) else convert(rules or {}, Rules)
     choices, skipped = choose_sizes(cache, mode, error, given)
@@ -36,17 +38,16 @@ def choose(beam: AnyBeam, mode: int | range, error: float, rules: Rules | Mappin
     rows: list[tuple[object, ...]] = []
     for choice in choices:
         size, cost = choice.size, (choice.unknowns, choice.error, choice.expected_error, choice.run_time_s)
-        lower = ", ".join(map(str, choice.lower))
-        rows.append((choice.variant.title, size.count, size.mode, *cost, size.smaller, lower))
-    columns = [Column("model"), Column("N"), Column("mode"), Column("unknowns")]
+        rows.append((choice.variant.title, size.count, size.mode, *cost, size.smaller))
+    columns = [Column("model"), Column("N"), Column("worst mode"), Column("unknowns")]
     columns += [Column("error", percent=True, format="+.3g"), Column("error law", percent=True, format="+.3g")]
     columns += [Column("solve time", "s", ".3g", prefix=True), Column("smaller N that also meets it")]
     notes = [f"{choice.variant.title}: {choice.size.known_by}" for choice in choices]
     notes += ["error law: expected error, see docs/theory.md"]
-    which = f"{first_mode}-{last}" if last > first_mode else f"{last}"
+    which = f"every mode from {first_mode} to {last}" if last > first_mode else f"mode {last}"
     return Result(
-        f"Smallest N from which on the frequency error of mode {which} is at most {100.0 * error:g} %.",
-        [Table("Sufficient sizes", [*columns, Column("lower modes above the limit")], rows, notes)],
+        f"Smallest N from which on the frequency error of {which} is at most {100.0 * error:g} %.",
+        [Table("Sufficient sizes", columns, rows, notes)],
         warnings=[f"{name} is skipped: {why}" for name, why in skipped.items()],
         margins=margins,
     )

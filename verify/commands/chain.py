@@ -97,6 +97,7 @@ def judge_chain(
     theory: str | None,
     corrected: str | None,
     formats: dict[str, Any],
+    run: dict[str, Any],
 ) -> None:
     """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
     files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]
@@ -105,9 +106,11 @@ def judge_chain(
         raise InputError(f"{' '.join(words)}: give one file, with one scene or none")
     beam = load_beam(others[0], overrides).beam if others else None
     out = Path(corrected) if corrected else None
-    result = judge_file(files[0], beam, modes, relative_error(within), theory, out)
+    result = judge_file(files[0], beam, modes, relative_error(within), theory, out, **run)
     if not any(formats.values()):
-        result = replace(result, tables=[result.tables[0], *map(_shortened, result.tables[1:])])
+        result = replace(
+            result, tables=[_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
+        )
     show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(GATE_FAILED)

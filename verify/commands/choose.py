@@ -16,7 +16,7 @@ from verify.validation import Relative
 @click.command(cls=BeamCommand)
 @scene_argument
 @click.argument("rules", nargs=-1, metavar="[RULE=VALUE]...")
-@click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of a range: 1-12.")
+@click.option("--mode", required=True, metavar="N", help="All modes up to N, or those of a range: 5-12, 7-7.")
 @click.option("--error", required=True, metavar="E", help="Largest relative frequency error: 1% or 0.01.")
 @overrides_option
 @format_options
@@ -37,11 +37,12 @@ def choose(
     show(choose_sizes(load_beam(scene, overrides), modes, largest, chosen), **formats)
 
 
-def _modes(text: str) -> int | range:
+def _modes(text: str) -> range:
+    """The modes of '12', from 1 on, or of '5-12'. Raises InputError."""
     modes = typed(text, tuple[int, ...], "mode")
     if not all(isinstance(mode, int) and mode > 0 for mode in modes) or modes != [*range(modes[0], modes[-1] + 1)]:
-        raise InputError(f"mode = {text!r}: give one mode, or all of a range as 1-12, numbered from 1")
-    return modes[0] if len(modes) == 1 else range(modes[0], modes[-1] + 1)
+        raise InputError(f"mode = {text!r}: give the last mode, or all of a range as 5-12, numbered from 1")
+    return range(1 if len(modes) == 1 and "-" not in text else modes[0], modes[-1] + 1)
 
 
 def relative_error(text: str) -> float:

@@ -2,7 +2,7 @@
 
 from os.path import exists
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import click
 
@@ -13,7 +13,9 @@ from verify.convert import typed
 from verify.errors import InputError
 from verify.scene.file import load_beam
 from verify.settings import THEORIES
-from verify.validation import Relative
+from verify.validation import Relative, unit
+
+Seconds = Annotated[float, unit("s")]
 
 
 @click.command(cls=shared.BeamCommand)
@@ -34,9 +36,13 @@ from verify.validation import Relative
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory", type=click.Choice(THEORIES), help=f"Of the exact beam. Default: {THEORIES[0]}; in space, rayleigh."
+    "--theory",
+    type=click.Choice(THEORIES),
+    help="Of the exact beam. Default: that of the list; in space, rayleigh.",
 )
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
+@click.option("--engine", metavar="NAME[:INTEGRATOR]", default="", help="That a chain runs in. Default: its file's.")
+@click.option("--step", "time_step", metavar="TIME", help="Its time step, such as 1ms. Default: that of its file.")
 @shared.output_options
 def compare(
     scene: str,
@@ -51,12 +57,16 @@ def compare(
     within: str,
     theory: str | None,
     corrected: str | None,
+    engine: str,
+    time_step: str | None,
     **formats: Any,
 ) -> None:
     """Identify the discretisation behind natural frequencies of SCENE's beam, and their errors.
 
     FILE is a list of frequencies or a solver's output (.csv, .txt, .tsv, .dat, .f06, or - for standard input), measured
     modes (.uff, .unv), or a mesh with mode shapes. Exit status 1 where the list has a fault or an error is too large.
+
+    FILE may be a record of free vibration: a table with a time column, then signals.
 
     FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md).
 
@@ -65,7 +75,10 @@ def compare(
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
-        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats)
+        run = {"engine": engine, "step": None if time_step is None else typed(time_step, Seconds, "step")}
+        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
+    if engine or time_step:
+        raise click.UsageError("--engine and --step are of a chain in an .xml, .sdf or .urdf.")
     if bool(words) == bool(model):
         raise click.UsageError("Give either FILE or FREQUENCIES, or --model.")
     limit = typed(within, Relative, "within")
@@ -88,7 +101,7 @@ def compare(
             kind=kind,
             mode=mode,
             within=limit,
-            theory=theory or THEORIES[0],
+            theory=theory,
             progress=step,
         )
     shared.show(result, **formats)

@@ -21,6 +21,7 @@ LABELS = {
     EXACT: "exact beam",
     "links": "rigid links",
     "points": "rigid links with point masses",
+    "halves": "rigid links with half links at both ends, joints EI/l",
     "joints": "links with mass lumped at the joints",
     "rod": "Cosserat rod with mass lumped at the nodes",
     "consistent": "Hermite elements, consistent mass",
@@ -39,7 +40,8 @@ LABELS = {
 class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     """A discretisation without its N: model analytic, segment or fem.
 
-    `mass` of a chain: links, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz, linear(-lumped).
+    `mass` of a chain: links, halves, points, joints, rod; of elements: consistent, lumped, lumped-rotary, hrz,
+    linear(-lumped).
     `wall`: rule of a chain at a clamped end; None without one.
     """
 
@@ -77,6 +79,8 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         if self.model == ELEMENTS:
             even = "free" not in beam.supports and not is_stepped(beam) and self.theory == EULER
             return 4 if self.mass == "consistent" or (self.mass == "lumped" and even) else 2
+        if self.mass == "halves":
+            return 2
         if self.joints in STEPS:
             return None if self.joints == "centre" else 1
         rules = {"wall": self.wall or DEFAULT.wall, "joints": self.joints, "attachment": self.attachment}
@@ -87,13 +91,14 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
 def candidates(beam: Beam, kind: str | None = None) -> tuple[Candidate, ...]:
     """All candidates for a beam, or the exact beam and those of a kind, 'segments' or 'elements'."""
     chains = _chains(beam) if kind != "elements" else ()
+    theories = (EULER,) if beam.tension else THEORIES  # under an axial force the others are not unique
     masses = ("consistent", "lumped", "lumped-rotary", "hrz") if kind != "segments" else ()
     linear = ("linear", "linear-lumped") if masses else ()
     return (
         *chains,
-        *(Candidate(model=ELEMENTS, mass=mass, theory=theory) for mass, theory in product(masses, THEORIES)),
-        *(Candidate(model=ELEMENTS, mass=mass, theory="timoshenko") for mass in linear),
-        *(Candidate(model=EXACT, theory=theory) for theory in THEORIES),
+        *(Candidate(model=ELEMENTS, mass=mass, theory=theory) for mass, theory in product(masses, theories)),
+        *(Candidate(model=ELEMENTS, mass=mass, theory="timoshenko") for mass in linear if len(theories) > 1),
+        *(Candidate(model=EXACT, theory=theory) for theory in theories),
     )
 
 
@@ -104,7 +109,7 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     every = [name for name in WALLS if clamped or name not in faults]
     walls = sorted(every, key=lambda name: name != "half") if clamped or has_wall(beam) else [None]
     rules = ["series"] + ["printed"] * is_stepped(beam) + ["tensioned"] * bool(beam.tension)
-    for joints, wall, theory in product(rules, walls, THEORIES):
+    for joints, wall, theory in product(rules, walls, (EULER,) if beam.tension else THEORIES):
         if (wall == "welded" and (theory != EULER or not clamped)) or (wall in faults and theory == "timoshenko"):
             continue
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, theory=theory)
@@ -114,9 +119,11 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
             yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints, attachment="lever")
     for joints, wall in product(STEPS if is_stepped(beam) else (), common):
         yield Candidate(model=CHAIN, mass="links", wall=wall, joints=joints)
+    if not beam.uniform or set(beam.supports) != {"pinned"}:  # there whole links have the same frequencies
+        yield Candidate(model=CHAIN, mass="halves")
     for mass, wall in product(("points", "joints"), common):
         yield Candidate(model=CHAIN, mass=mass, wall=wall)
-    for wall in common:
+    for wall in common if not beam.tension else ():
         if wall != "gregory":
             yield Candidate(model=CHAIN, mass="rod", wall=wall, theory="timoshenko")
 
@@ -135,4 +142,6 @@ def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes:
     line, wall = DiscreteBeam(beam, count or 0, candidate.theory, candidate.joints), candidate.wall or "half"
     if candidate.model == ELEMENTS:
         return line.elements_hz(n_modes, candidate.mass)
+    if candidate.mass == "halves":
+        return line.halves_hz(n_modes)
     return line.rod_hz(n_modes, wall) if candidate.mass == "rod" else line.chain_hz(n_modes, candidate.mass, wall)

@@ -1,6 +1,7 @@
 """Comparison of frequencies from another program with candidate discretisations and the exact beam of a scene."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import Any, get_args
 
@@ -8,24 +9,28 @@ import msgspec
 import numpy as np
 
 from verify.analysis.comparison import LEAST_MAC, LOW_MAC, mac, node_weights, pair_modes
+from verify.analysis.verdict import Margin
 from verify.arrays import Array, Indices
 from verify.compare.candidates import CHAIN, ELEMENTS, EULER, EXACT, Candidate, candidates, frequencies_hz
 from verify.compare.fit import Data, Identification, identify, spectrum
-from verify.compare.reading import FrequencyList, ModeShapes
+from verify.compare.reading import MOST, FrequencyList, ModeShapes
 from verify.compare.report import Entry, result_of
-from verify.compare.sorting import BENDING, Sorted, rigid_of, sort_list
+from verify.compare.sorting import ACROSS, BENDING, Sorted, rigid_of, sort_list
 from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.problem.beam import Beam
 from verify.problem.supports import Support
 from verify.report.result import Result
 from verify.scene.file import NamedBeam
+from verify.settings import THEORIES
 from verify.validation import check_integer
 
 SPARE = 4
 """Number of modes above those of a list for the pairing of shapes."""
 ERRORS = (1e-2, 1e-3)
 """Errors for which the required N is computed; the first is the default of the accuracy."""
+FOLLOWED = 0.25
+"""Largest error against Timoshenko over that against Euler-Bernoulli of a list that follows the former."""
 SIMILAR = 0.02
 """Difference of the lower modes from those of other supports that are named."""
 
@@ -34,14 +39,15 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """Options of a comparison; None: any, for `mode` the last of the list.
 
     `count`: N of the model. `kind`: 'segments' or 'elements'. `mode`: mode for the required N. `within`: accuracy,
-    the largest relative error against the exact beam. `theory`: theory of the exact beam.
+    the largest relative error against the exact beam. `theory`: theory of the exact beam; None: Euler-Bernoulli, or
+    the one that the list follows.
     """
 
     count: int | None = None
     kind: str | None = None
     mode: int | None = None
     within: float = ERRORS[0]
-    theory: str = EULER
+    theory: str | None = None
 
 
 def compare(
@@ -58,24 +64,24 @@ def compare(
     beam, options, read = scene.beam, options or Options(), listed
     for field in ("count", "mode"):
         if getattr(options, field) is not None:
-            check_integer(field, getattr(options, field), 1)
-    elastic = _by_shape(beam, listed, shapes, options.theory) if shapes else sort_list(beam, listed, options.theory)
+            check_integer(field, getattr(options, field), 1, MOST)
+
+    def sorted_by(theory: str) -> Sorted:
+        return _by_shape(beam, read, shapes, theory) if shapes else sort_list(beam, read, theory)
+
+    elastic = sorted_by(options.theory or EULER)
     listed, rigid, macs, hertz = elastic.listed, elastic.rigid, elastic.macs, elastic.listed.hertz
     bending = np.array(elastic.motions) == BENDING
     entries, modes = elastic.entries[bending], elastic.modes[bending]
     ordered = macs is None and bool(bending.all()) and bool((modes == entries - rigid).all())
     logs, members, rounding = np.log(np.maximum(hertz, 1e-300)), candidates(beam, options.kind), listed.rounding
-    data = Data(
-        beam=beam,
-        logs=logs,
-        rounding=rounding,
-        members=members,
-        entries=entries,
-        modes=modes,
-        ordered=ordered,
-        count=options.count,
-    )
+    given = {"entries": entries, "modes": modes, "ordered": ordered, "count": options.count}
+    data = Data(beam=beam, logs=logs, rounding=rounding, members=members, **given)
     fits = identify(data, progress)
+    euler, chosen = elastic, options.theory or _followed(beam, fits, elastic, sorted_by, options.within)
+    if chosen != (options.theory or EULER):
+        elastic = sorted_by(chosen)
+    options = msgspec.structs.replace(options, theory=chosen)
     columns = [(elastic.entries + 1).tolist(), (elastic.modes + 1).tolist(), hertz[elastic.entries].tolist()]
     columns += [elastic.exact.tolist(), [None] * len(bending) if macs is None else macs.tolist(), elastic.motions]
     rows = [Entry(*cells) for cells in zip(*columns, strict=True)]
@@ -83,7 +89,9 @@ def compare(
     unlike = 0 if macs is None else len(hertz) - rigid - int((macs >= LOW_MAC).sum())
     supports = _other_supports(beam, logs[entries], modes) if fits.status == "unknown" else ()
     motions = beam.rigid_motions  # in space and along the axis there are more
+    gaps = ", ".join(map(str, elastic.gaps)) if fits.best.fault.kind not in ("missing", "extra") else ""
     messages = {
+        f"The list leaves out bending modes of the beam: {gaps}.": gaps,
         f"The list starts with {rigid} rigid-body motions, the beam of the scene has {motions}.": rigid
         and rigid not in ((motions, motions + 1, 2 * motions, 2 * motions + 1, 2 * motions + 2) if motions else (0,)),
         f"The values are in {listed.unit}, not in {read.unit}.": listed.unit != read.unit and read.declared,
@@ -92,7 +100,42 @@ def compare(
         f"The lower modes are those of a beam with other supports: {'-'.join(supports)}.": supports,
     }
     warnings = [text for text, holds in messages.items() if holds]
-    return result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
+    result = result_of(scene.name, listed, data, fits, rows, _required(data, fits, options), warnings, options)
+    aside = [
+        Margin(
+            name=f"{one}, that is set aside", size=0.0, fine=-1.0, limit=np.inf, condition=f"{one}, is no bending mode"
+        )
+        for one in elastic.unknown
+    ]
+    notes = _notes(elastic, euler, chosen)
+    return replace(result, summary=result.summary + notes, margins=[*result.margins, *aside])
+
+
+def _notes(elastic: Sorted, euler: Sorted, theory: str) -> str:
+    """Sentences on the theory that the list follows, and on entries that are set aside."""
+    notes = ""
+    if elastic is not euler:
+        off = f"up to {100.0 * abs(_errors(euler)).max():.2g} % off by Euler-Bernoulli"
+        notes = f" The list follows the exact beam by {theory.capitalize()}, its errors are against that; {off}."
+    return f"{notes} Set aside, of no known motion: {'; '.join(elastic.unknown)}." if elastic.aside else notes
+
+
+def _errors(elastic: Sorted) -> Array:
+    """Relative errors of the bending entries, (k,)."""
+    bent = np.array([motion in (BENDING, ACROSS) for motion in elastic.motions])
+    return np.asarray(elastic.listed.hertz[elastic.entries][bent] / elastic.exact[bent] - 1.0)
+
+
+def _followed(
+    beam: Beam, fits: Identification, euler: Sorted, sorted_by: Callable[[str], Sorted], within: float
+) -> str:
+    """Timoshenko where the list is of a stocky beam and follows that theory, else Euler-Bernoulli."""
+    largest, other = abs(_errors(euler)).max(initial=0.0), THEORIES[-1]
+    claims = fits.status in ("identified", "ambiguous") and fits.best.candidate.theory == EULER
+    known = all(piece.shear_stiffness and piece.rotary_inertia for piece in beam.pieces)
+    if claims or largest <= within or beam.tension or not known:
+        return EULER
+    return other if abs(_errors(sorted_by(other))).max() < FOLLOWED * largest else EULER
 
 
 def _by_shape(beam: Beam, listed: FrequencyList, shapes: ModeShapes, theory: str) -> Sorted:
@@ -144,7 +187,7 @@ def _other_supports(beam: Beam, logs: Array, modes: Indices) -> Sequence[str]:
 
 def _required(data: Data, fits: Identification, options: Options) -> list[tuple[Any, ...]]:
     """(candidate, mode, N for each of ERRORS or None beyond LARGEST) of the best and the usual candidates."""
-    beam, theory, mode = data.beam, options.theory, options.mode or int(data.modes.max()) + 1
+    beam, theory, mode = data.beam, options.theory or EULER, options.mode or int(data.modes.max()) + 1
     rules = ("gregory", "half", "full") if "clamped" in beam.supports else (None,)
     joints = "tensioned" if beam.tension else "series"
     sized = [
@@ -155,7 +198,10 @@ def _required(data: Data, fits: Identification, options: Options) -> list[tuple[
     n_modes = max(mode, data.n_modes)
 
     def error(candidate: Candidate, size: int) -> float:
-        hertz = frequencies_hz(candidate, beam, size, n_modes)
+        try:
+            hertz = frequencies_hz(candidate, beam, size, n_modes)
+        except InputError:  # fewer parts than pieces
+            return np.inf
         exact = frequencies_hz(Candidate(model=EXACT, theory=candidate.theory), beam, None, mode)[-1]
         return abs(float(hertz[mode - 1]) / float(exact) - 1.0) if len(hertz) >= mode else np.inf
 

@@ -12,7 +12,7 @@ from verify.analysis.variants import is_uneven
 from verify.arrays import Array, Indices
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
 from verify.compare.discrete import STEPS
-from verify.compare.effects import effect_of, fit_parameter
+from verify.compare.effects import CAUSES, effect_of, fit_parameter
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam, features
@@ -31,12 +31,14 @@ FEWEST, REFINED = 3, 5
 FAULTS = {
     "none": ("none", 0.0, 0),
     "shear": ("another kappa G, factor", 4.0, 1),
+    "tension": ("another axial force, factor", 5.0, 1),
     "constants": ("constants by hand, beta L to", 4.0, 1),
     "scene": ("part of the scene left out", 5.0, 0),
     "count": ("another size", 5.0, 1),
     "missing": ("missing mode", 6.0, 1),
     "extra": ("extra entry", 6.0, 2),
     "factor": ("common factor", 9.0, 1),
+    "tip": ("mass at the free end over rho A L", 9.0, 1),
     "clamp": ("compliant clamp, k_r L/EI", 9.0, 1),
 }
 """Title, cost in log likelihood, number of fitted parameters; an extra entry also removes one value."""
@@ -47,8 +49,8 @@ EXACTS = ("none", "shear", "constants")
 class Fault(msgspec.Struct, frozen=True, eq=False):
     """A possible fault of a list, or none; `kind` is a key of FAULTS.
 
-    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: mode, entry, ends or part. `ends`: compliant
-    clamps. `decimals` of constants. `beam`: another than that of the scene.
+    `entries` of the list, (k,) from 0, are `modes`, (k,) from 0. `label`: mode, entry, ends or part. `ends`: those
+    with a compliant clamp or a mass. `decimals` of constants. `beam`: another than that of the scene.
     """
 
     kind: str
@@ -63,9 +65,9 @@ class Fault(msgspec.Struct, frozen=True, eq=False):
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A candidate and a fault fitted to a list; `digits`: relative last digit of its entries.
 
-    `parameter`: the factor of frequencies or kappa G, or the clamp's k_r L/EI. `differences` (k,): relative ones of the
-    corrected list. `effect`: rms change of log frequency by the fault. `rms` and `largest`: log differences beyond
-    the rounding of the list.
+    `parameter`: the factor of frequencies, kappa G or axial force, the clamp's k_r L/EI, or the mass over rho A L.
+    `differences` (k,): relative ones of the corrected list. `effect`: rms change of log frequency by
+    the fault. `rms` and `largest`: log differences beyond the rounding of the list.
     """
 
     candidate: Candidate
@@ -121,7 +123,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         sharp = self.floor <= 1e-8 and fit.rms <= FLOOR
         enough = len(fit.differences) - self.fitted(fit) >= (1 if sharp else 2)
         explains = fit.rms <= EFFECT * fit.effect and fit.effect > 2.0 * self.rounding[fit.fault.entries].max()
-        return self.agrees(fit) and enough and (explains or fit.fault.kind not in ("factor", "clamp"))
+        return self.agrees(fit) and enough and (explains or fit.fault.kind not in ("factor", "clamp", "tip", "tension"))
 
     def agrees(self, fit: Fit) -> bool:
         """Whether all differences are within the digits; the last digit may be off by one."""
@@ -173,15 +175,19 @@ def identify(data: Data, progress: Callable[[str], None] = lambda step: None) ->
     every = [*ranking, *(one for kind, fits in tested.items() if kind != best.fault.kind for one in fits)]
     most = AMBIGUOUS * hypot(best.rms, data.floor)
     near = [one for one in every if hypot(one.rms, data.floor) <= most and data.agrees(one)]
-    exact = [one for one in near if not one.candidate.sized and one.fault.kind in EXACTS]
-    if exact:
-        best = min(exact, key=lambda one: (data.fitted(one), data.score(one)))
+    plain_ones = [one for one in near if not one.candidate.sized]
+    exact = [one for one in plain_ones if one.fault.kind in EXACTS]
+    plain_ones = [one for one in plain_ones if one.fault.kind == best.fault.kind and data.accepts(one)]
+    if firm := exact or plain_ones:  # the exact beam comes before a chain that is as fine
+        best = min(firm, key=lambda one: (data.fitted(one), data.score(one)))
         ranking = [best, *(one for one in ranking if one is not best)]
-    equal = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
+    same = [one for one in ranking[1:] if one.fault is best.fault and _same(one, best)]
+    fits_same = (best.count, round(best.parameter, 9))  # another N or parameter is another explanation
+    equal = [one for one in same if (one.count, round(one.parameter, 9)) == fits_same]
     close = [o for o in near if o is not best and o not in equal and data.fitted(o) <= data.fitted(best) + 1]
     if best.fault.kind == "none":  # with a common factor these walls are EI/l on a beam of another length
         close = [o for o in close if o.fault.kind != "factor" or o.candidate.wall not in ("welded", "rigid")]
-    close = sorted(filter(data.accepts, close), key=data.score)
+    close = sorted(filter(data.accepts, close), key=lambda one: (one.candidate.sized, data.score(one)))
     status = "exact" if exact else "few" if not likely else "ambiguous" if close else "identified"
     if not data.accepts(best):
         status = "few" if data.agrees(best) else "unknown"
@@ -202,6 +208,8 @@ def _faults(data: Data) -> Iterator[Fault]:
         return
     if beam.base_section.shear_stiffness and beam.base_section.rotary_inertia:
         yield Fault("shear", entries, modes)
+    if beam.tension:
+        yield Fault("tension", entries, modes)
     for decimals in (2, 3, 4) if beam.uniform else ():
         yield Fault("constants", entries, modes, f"{decimals} decimals", decimals=decimals)
     yield Fault("factor", entries, modes)
@@ -209,6 +217,9 @@ def _faults(data: Data) -> Iterator[Fault]:
     symmetric = beam.mirrored() == beam  # there the left end alone equals the right one
     for ends in dict.fromkeys([*((one,) for one in clamped[: 1 if symmetric else None]), clamped] if clamped else []):
         yield Fault("clamp", entries, modes, " and ".join(ends), ends=ends)
+    if "free" in beam.supports and len(set(beam.supports)) == 2:
+        end = ("left", "right")[beam.supports.index("free")]
+        yield Fault("tip", entries, modes, end, ends=(end,))
     for i in range(n if data.ordered else 0):
         yield Fault("missing", entries, np.delete(np.arange(n + 1), i), f"mode {i + 1}")
         yield Fault("extra", np.delete(entries, i), modes[:-1], f"entry {entries[i] + 1}")
@@ -224,9 +235,12 @@ def _best(data: Data, faults: Sequence[Fault], *, every: bool = False) -> list[F
 
     scanned = rank(_scanned(data, one, fault) for one in data.members for fault in faults)
     near = [*scanned[:REFINED], *[one for one in scanned[REFINED:] if not one.candidate.sized][:1]]
-    if faults and faults[0].ends:  # the scan uses the effect on the exact beam, which differs from the candidate's
+    cause = faults[0].kind if faults else ""
+    if (
+        cause in CAUSES and cause != "shear"
+    ):  # the scan uses the effect on the exact beam, which differs from the candidate's
         near += [one for one in scanned if one not in near and one.candidate.theory == EULER][:REFINED]
-    parts = {"factor": 0.03, "clamp": 0.1}.get(faults[0].kind if faults else "", np.inf)
+    parts = {"factor": 0.03, "clamp": 0.1, "tip": 0.1}.get(cause, np.inf)
     near = [one for one in near if one.rms < min(PROMISING, parts * one.effect) or is_uneven(data.beam)] or near[:1]
     refined = rank(_refined(data, one) for one in near)
     if faults and faults[0].kind == "none" and is_uneven(data.beam) and refined and refined[0].rms > data.floor:
@@ -268,7 +282,8 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[in
     """The fit at the best of `counts` (default: interpolated N); None if the fault does not apply."""
     theory = {"shear": "timoshenko", "constants": EULER}.get(fault.kind)
     springs = candidate.packaged and candidate.attachment == "reciprocal" and candidate.wall != "welded"
-    if (fault.ends and not springs) or (theory and (candidate.sized or candidate.theory != theory)):
+    varies = fault.kind in CAUSES
+    if (varies and not springs) or (theory and (candidate.sized or candidate.theory != theory)):
         return None
     beam = fault.beam or data.beam
     if not candidate.sized:
@@ -283,9 +298,9 @@ def _scanned(data: Data, candidate: Candidate, fault: Fault, counts: Sequence[in
         counts = sizes[sizes <= SEARCHED].tolist()
     raw = data.logs[fault.entries] - table[: len(counts), fault.modes]
     parameters, removed = np.ones(len(raw)), np.zeros_like(raw)
-    if fault.ends or fault.kind == "shear":
+    if varies:
         try:
-            grid, effect = effect_of(beam, fault.ends, data.n_modes)
+            grid, effect = effect_of(beam, fault.kind, fault.ends, data.n_modes)
         except InputError:
             return None
         effect = effect[:, fault.modes]
@@ -318,7 +333,7 @@ def _refined(data: Data, fit: Fit, *, every: bool = False) -> Fit | None:
     `every`: at all N with an interpolated error of a third of the list's or more.
     """
     best = _solved(data, fit, fit.count)
-    wide = is_uneven(data.beam) and not fit.fault.ends
+    wide = is_uneven(data.beam) and fit.fault.kind not in CAUSES
     if best is None or best.count is None or data.count is not None or len(data.entries) < FEWEST:
         return best
     off = float(abs(best.differences - fit.differences).max())  # by interpolation: at the right N it is all there is
@@ -342,14 +357,19 @@ def _refined(data: Data, fit: Fit, *, every: bool = False) -> Fit | None:
 def _solved(data: Data, fit: Fit, count: int | None) -> Fit | None:
     """A fit with the computed frequencies of a candidate at N; None if the model does not exist."""
     fault, candidate = fit.fault, fit.candidate
-    if (not fault.ends and fault.kind != "shear") or fit.rms > PROMISING:
+    if fault.kind not in CAUSES or fit.rms > PROMISING:
         return fit if data.count is not None else _scanned(data, candidate, fault, (count,))
     try:
         logs = data.logs[fault.entries]
-        parameter, left = fit_parameter(data.beam, fault.ends, fit.parameter, candidate, count, logs, fault.modes)
+        cause = fault.kind, fault.ends
+        parameter, left = fit_parameter(data.beam, cause, fit.parameter, candidate, count, logs, fault.modes)
     except InputError:
         return None
-    return _fit(data, candidate, count, fault, parameter, left, np.full(len(logs), fit.effect))
+    grid, effects = effect_of(
+        data.beam, *cause, data.n_modes
+    )  # of the fitted parameter, not of the nearest in the grid
+    removed = [np.interp(parameter, grid, effects[:, mode]) for mode in fault.modes]
+    return _fit(data, candidate, count, fault, parameter, left, np.array(removed))
 
 
 def _logs(beam: Beam, candidate: Candidate, count: int | None, n_modes: int) -> Array:

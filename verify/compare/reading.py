@@ -223,7 +223,12 @@ def read_series(path: Path) -> tuple[Array, Array, Array | None]:
 
 def _table(path: Path, source: str) -> tuple[list[str], Array]:
     """(header or empty, numbers (n, k)) of a text file. Raises InputError."""
-    head, rows = _rows(read_text(path, "file"), source)
+    return read_table(read_text(path, "file"), source)
+
+
+def read_table(text: str, source: str) -> tuple[list[str], Array]:
+    """(header or empty, numbers (n, k)) of a text. Raises InputError."""
+    head, rows = _rows(text, source)
     return head, np.array([_numbers(row, source, i) for i, row in enumerate(rows, start=1)])
 
 

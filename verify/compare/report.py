@@ -1,5 +1,6 @@
 """The result of a comparison: modes, candidates, faults, required N and acceptance as tables; one figure."""
 
+from math import pi
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -10,6 +11,7 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import is_uneven, not_default
 from verify.analysis.verdict import Margin, per_cent, void
 from verify.compare.candidates import EULER, EXACT, Candidate, frequencies_hz
+from verify.compare.effects import CAUSES
 from verify.compare.fit import FAULTS, Data, Fit, Identification
 from verify.compare.reading import FrequencyList
 from verify.compare.sorting import ACROSS, BENDING
@@ -30,11 +32,30 @@ STATUS = {
     "few": "Too few frequencies to identify a model; one of those that agree",
     "unknown": "None of the known family; nearest",
 }
+TWIN = 1e-7
+"""Difference of explanations whose frequencies are equal: that of a parameter by least squares."""
 POWERS = {"E": 2.0, "rho": -2.0, "thickness or diameter": 1.0, "length": -0.5}
 """Parameters that change all frequencies by a common factor, with the power of the factor."""
 TIP_MASS = "A cantilever with clamp stiffness k_r = c EI/L has the frequencies of one with a tip mass rho A L / c."
 UNEVEN = "With steps or attachments inside a part a larger N may exceed the tolerance."
-GRAVITY = 9.80665
+_ROOTS = {f"{g:g}": g**0.5 for g in (9.80665, 9.81, 386.09, 386.4)}  # m/s^2 and in/s^2, as programs have them
+FACTORS = {
+    **{f"weight for mass, 1/sqrt(g), g = {g}": 1.0 / root for g, root in _ROOTS.items()},
+    **{f"mass for weight, sqrt(g), g = {g}": root for g, root in _ROOTS.items()},
+    "metres for inches": 0.0254,
+    "inches for metres": 1.0 / 0.0254,
+    "kg for t, 1/sqrt(1000)": 1e3**-0.5,
+    "t for kg, sqrt(1000)": 1e3**0.5,
+    "radians for degrees, pi/180": pi / 180.0,
+    "degrees for radians, 180/pi": 180.0 / pi,
+    "mm for m, or E in MPa": 1e-3,
+    "m for mm, or MPa as Pa": 1e3,
+    "E in GPa": 10.0**-4.5,
+    "GPa as Pa": 10.0**4.5,
+    "rad/s for Hz, 2 pi": 2.0 * pi,
+    "Hz for rad/s, 1/(2 pi)": 0.5 / pi,
+}
+"""Common factors of lists with the confusion that causes them."""
 ENTRY = (Column("entry"), Column("mode"), Column("listed", "Hz", ".7g"), Column("exact", "Hz", ".7g"))
 RMS = (Column("rms", format=".3g", percent=True), Column("largest", format=".3g", percent=True))
 
@@ -71,7 +92,7 @@ def result_of(
     """
     best, beam, kind, within = fits.best, data.beam, fits.best.fault.kind, options.within
     claimed = fits.status in ("identified", "ambiguous")
-    misread = claimed and kind in ("missing", "extra")
+    misread = claimed and (kind in ("missing", "extra", "tension") or best.fault.label == "beam.tension")
     faults = [f"the list has a fault: {FAULTS[kind][0]} {value(best, beam)}"] * misread + warnings
     bent = [row for row in rows if row.motion in (BENDING, ACROSS)]
     worst = max(bent, key=lambda row: abs(row.error))
@@ -80,16 +101,11 @@ def result_of(
     agreement = ", within the rounding of its digits" if coarse else f", rms difference {best.rms:.2g}"
     summary = f"{STATUS[fits.status]}: {_title(best, beam)}{agreement * (fits.status != 'ambiguous')}."
     others = fits.alternatives if fits.status in ("identified", "ambiguous", "exact") else ()
-    if others:
-        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
-        summary += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
-        summary += " More digits or modes distinguish them." * (fits.status == "ambiguous")
-    nearer = fits.tested[0]
-    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
-        summary += f" Nearer, but not within the digits: {_title(nearer, beam)}, rms difference {nearer.rms:.2g}."
+    summary += _others(data, fits, others)
     if source.unit != "Hz" and not source.declared:
         summary += f" The values are read as {source.unit}."
-    if claimed and {fit.candidate.wall for fit in others} <= {best.candidate.wall} and (change := _change(best, beam)):
+    chains = {(fit.candidate.wall, fit.candidate.joints, fit.count) for fit in (best, *others)}
+    if claimed and len(chains) == 1 and (change := _change(best, beam)):  # no joint that another of them has not
         summary += f"\nTo change: {change}"
     about: dict[str, Any] = {"scene": scene, "source": source.source, "unit": source.unit, "passed": passed}
     about |= {"status": fits.status, "identified": fits.status == "identified", "best": _plain(best, beam)}
@@ -109,8 +125,27 @@ def result_of(
     kinds = {fit.fault.kind for fit in (best, *others)}
     if "clamp" in kinds and beam.uniform and set(beam.supports) == {"clamped", "free"}:
         warnings = [*warnings, TIP_MASS]
-    figures = [_figure(beam, fits, rows)] if any(row.motion == BENDING for row in rows) else []
+    figures = [_figure(beam, fits, rows, options.theory)] if any(row.motion == BENDING for row in rows) else []
     return Result(summary, tables, figures, warnings=warnings, data=about, margins=margins)
+
+
+def _others(data: Data, fits: Identification, others: tuple[Fit, ...]) -> str:
+    """Sentences on other explanations that agree, and on a nearer one that is no evidence."""
+    best, nearer, text, beam = fits.best, fits.tested[0], "", data.beam
+    if others:
+        more = f"; and {len(others) - 3} more" if len(others) > 3 else ""
+        text += f" Others that agree: {'; '.join(_title(one, beam) for one in others[:3])}{more}."
+        alike = [one.differences for one in others if one.candidate.sized == best.candidate.sized]
+        twins = len(alike) == len(others) and all(one.shape == best.differences.shape for one in alike)
+        twins = twins and bool((abs(np.array(alike) - best.differences) < TWIN).all())
+        which = "Their frequencies are equal: shapes or drawings" if twins else "More digits or modes"
+        text += f" {which} distinguish them." * (fits.status == "ambiguous")
+    if fits.status == "unknown" and nearer.rms < 0.5 * best.rms:
+        agrees = data.agrees(nearer)
+        why = "Within the digits, but of too few entries for its parameters" if agrees else "Nearer"
+        far = "" if agrees else f", not within the digits: rms difference {nearer.rms:.2g}"
+        text += f" {why}: {_title(nearer, beam)}{far}."
+    return text
 
 
 def _change(best: Fit, beam: Beam) -> str:
@@ -137,7 +172,7 @@ def _change(best: Fit, beam: Beam) -> str:
     return f"{'; '.join(texts)}. All joints: `verify chain ... --count {best.count}`." if texts else ""
 
 
-def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
+def _figure(beam: Beam, fits: Identification, rows: list[Entry], theory: str) -> Figure:
     """Errors of the list, the best and the next candidate."""
     best = fits.best
     following = next((fit for fit in fits.ranking[1:] if fit not in fits.equivalent), None)
@@ -145,7 +180,7 @@ def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
     n = max(row.mode for row in rows)
 
     def draw(ax: "Axes") -> None:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, n)
+        exact = frequencies_hz(Candidate(model=EXACT, theory=theory), beam, None, n)
         ax.plot([row.mode for row in rows], [100.0 * row.error for row in rows], "o", label="list")
         for fit, style in ((best, "-"), (following, "--")):
             if fit is not None:
@@ -155,7 +190,7 @@ def _figure(beam: Beam, fits: Identification, rows: list[Entry]) -> Figure:
         ax.set(xlabel="mode", ylabel="frequency error, %")
         ax.legend()
 
-    caption = "Errors against the exact Euler-Bernoulli beam. Points: the list. Lines: the best and the next candidate."
+    caption = f"Errors against the exact {theory.capitalize()} beam. Points: the list. Lines: the best two candidates."
     return Figure("compare", "Frequencies and best candidates", caption, draw)
 
 
@@ -224,15 +259,22 @@ def value(fit: Fit, beam: Beam) -> str:
     kind = fit.fault.kind
     if kind == "count":
         return f"N = {fit.count}"
-    words = [f"{fit.parameter:.6g}"] * (kind in ("factor", "shear", "clamp")) + [fit.fault.label]
+    words = [f"{fit.parameter:.6g}"] * (kind == "factor" or kind in CAUSES) + [fit.fault.label]
+    if kind == "tension":
+        off = fit.parameter - 1.0
+        words.append(
+            f"({fit.parameter * beam.tension:.6g} N, {abs(off):.3%} of T {'left out' if off < 0.0 else 'more'})"
+        )
+    if kind == "tip":
+        whole = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
+        words.append(f"({fit.parameter * whole:.6g} kg that the scene lacks)")
     if kind == "factor":
-        root, near = GRAVITY**0.5, max(fit.rms, fit.digits, 1e-5)
-        factors = {"weight for mass, 1/sqrt(g)": 1.0 / root, "mass for weight, sqrt(g)": root}
-        factors |= {"metres for inches": 0.0254, "inches for metres": 1.0 / 0.0254}
-        factors["plane strain, 1/sqrt(1 - nu^2)"] = (1.0 - beam.poissons_ratio**2) ** -0.5
+        factors = FACTORS | {"plane strain, 1/sqrt(1 - nu^2)": (1.0 - beam.poissons_ratio**2) ** -0.5}
         if beam.width and beam.thickness and beam.width != beam.thickness and beam.uniform:
             factors["width and thickness exchanged"] = beam.width / beam.thickness
-        names = [name for name, factor in factors.items() if abs(fit.parameter / factor - 1.0) < near]
+        offs = {name: abs(fit.parameter / factor - 1.0) for name, factor in factors.items()}
+        near = min(offs.values())  # of several values of g the nearest
+        names = [name for name, off in offs.items() if off < max(fit.rms, fit.digits, 1e-5) and off <= near + 1e-6]
         words += [f"({' or '.join(names)})"] * bool(names)
     return " ".join(word for word in words if word)
 

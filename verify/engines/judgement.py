@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from functools import partial
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,20 +12,23 @@ import numpy as np
 
 from verify.analysis.plausibility import unit_margins
 from verify.analysis.verdict import FINE, Margin, per_cent
-from verify.arrays import Array
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, judge
+from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
+from verify.engines.twist import judge_twist
 from verify.errors import InputError, shown
 from verify.files import whole
+from verify.formatting import with_unit
 from verify.problem.beam import Beam, check_features, in_plane
 from verify.problem.supports import FIXED
 
 if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
+STIFFNESS = {"bending": "EI", "torsion": "GJ"}
 NOTICED = 0.1
 """Part of the acceptance up to which an error of a mode may grow by a correction."""
 
@@ -46,46 +50,60 @@ def judge_file(
     within: float = FINE,
     theory: str | None = None,
     corrected: Path | None = None,
+    engine: str = "",
+    step: float | None = None,
 ) -> "Result":
-    """The result of the chain in a file, acceptance in `data["passed"]`: all errors are `within`.
+    """The result of the chain in a file as it runs, acceptance in `data["passed"]`: all errors are `within`.
 
     `theory`: by default "euler-bernoulli" in a plane, "rayleigh" in space where links have the rotary inertia of their
-    drawn sections. `corrected`: file to write, with correct stiffnesses. Raises InputError for another file.
+    drawn sections. `corrected`: file to write, with correct stiffnesses and a time step that runs. `engine` "NAME" or
+    "NAME:INTEGRATOR", `step` in s: in place of those of the file. Raises InputError for another file.
     """
     from verify.report.result import Column, Result, Table
 
     if corrected and corrected.suffix.lower() != path.suffix.lower():
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
-    kind, solids, gravity = read(path)
-    found = lines(solids, path.name)
-    in_space = len(found) > 1 and all(line.solid for line in found)
+    kind, solids, gravity, own = read(path)
+    setting, every = setting_of(own, engine, step), lines(solids, path.name)
+    in_space = len(found := [line for line in every if line.axis != "torsion"]) > 1 and all(one.solid for one in found)
     theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
-    error = [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
-    hz = [Column(name, "Hz", ".7g") for name in ("exact", "file")]
+    judged += filter(None, (judge_twist(line, beam) for line in every[len(found) :]))
+    lone = every[len(judged) :]
+    columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
+    columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
     each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
+    rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
+    exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
+    run = partial(judge_runs, exact=exact, beam=judged[0].present.beam, setting=setting, within=within)
+    ran = run([*(one.line for one in judged), *lone])
     units = unit_margins(beam or judged[0].correct.beam)
-    rows, margins = list(itertools.chain(*each)), [*units, *itertools.chain(*margins_of)]
-    tables = [Table("Frequencies", [Column("axis"), Column("mode"), *hz, *error], rows), *joints]
+    others = [*units, *ran.margins, *under_gravity(judged, solids, gravity, within)]
+    tables = [Table("Frequencies", columns, rows), *ran.tables, *joints]
     warnings = [text for one in judged for text in one.advice]
     clashes = contradictions(found, axes, beam)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
-        margins.append(Margin(size=size, fine=within, limit=within, harm="premise", **words))
-    warnings += [*_hints(solids, gravity, judged, beam), *filter(None, worse)]
+        others.append(Margin(size=size, fine=within, limit=within, harm="premise", **words))
+    warnings += [*ran.warnings, *_hints(solids, judged, beam, lone), *filter(None, worse)]
     if corrected and (clashes or any(worse)):
         why = clashes[0][-1] if clashes else "it would be worse"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
-        warnings.append(_write(path, kind, solids, _changes(judged), corrected))
-    rules = [f"{one.line.axis}: {one.rule}, EI = {one.stiffness:.6g} N m2" for one in judged]
+        right = [one.line._replace(springs=one.springs) for one in judged]
+        last = run([*right, *lone]).data.get("within", 0.0)
+        warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
+        warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
+    rules = [f"{one.line.axis}: {one.rule}, {STIFFNESS[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
-    summary = f"{sizes}; {'; '.join(rules)}."
-    passed = max(float(abs(one["error"]).max()) for one in data) <= within and not (clashes or units)
-    return Result(summary, tables, warnings=warnings, margins=margins, data={"passed": passed, "chains": list(data)})
+    summary = f"{'; '.join([sizes, *rules])}. {ran.summary}".strip()
+    worst = max([one.size for one in others] + [float(abs(one["error"]).max()) for one in data])
+    margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
+    known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
+    return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
 
 def _changes(judged: list[Judged]) -> dict[str, float]:
@@ -98,9 +116,9 @@ def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[
     """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
     from verify.report.result import Column, Table
 
-    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(n_modes=modes)
-    m, exact = len(hertz), one.present.exact_hz(n_modes=len(hertz))
-    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(n_modes=m) / exact - 1.0
+    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.line.turns, modes)
+    m, exact = len(hertz), one.present.exact_hz(one.line.turns, len(hertz))
+    errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.line.turns, m) / exact - 1.0
     rows = list(zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True))
     springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
     change = Column("change", format="+.3g", percent=True)
@@ -139,6 +157,8 @@ def _cause(one: Judged) -> str:
     if long := [j for j in range(len(lengths)) if lengths[j] > 1.5 * usual]:
         names = " and ".join(f"{one.line.joints[j] or 'the wall'} ({lengths[j]:.4g} m)" for j in long[:2])
         return f"divide the link behind {names} into links of {usual:.4g} m"
+    if one.links and one.line.axis == "torsion":
+        return "give the links the polar inertia of the beam"
     if one.links:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
@@ -146,19 +166,13 @@ def _cause(one: Judged) -> str:
     return "give more links"
 
 
-def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam | None) -> list[str]:
-    """What the frequencies leave out: ball joints, gravity along the chain; the modulus that EI means for round links.
-
-    Gravity counts from a tenth of EI/L^2 on, which changes the first frequency of a cantilever by about 0.6 %.
-    """
-    hints, own, named = list[str](), judged[0].present.beam, {name for one in judged for name in one.line.joints}
-    moving = [one for one in solids if any(move.joint in named for move in one.moves)]
+def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: list[Line]) -> list[str]:
+    """What the frequencies leave out: ball joints, torsion; the modulus that EI means for round links."""
+    hints = list[str]()
     if any(one.line.ball for one in judged):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
-    along = moving[-1].moves[0].at - moving[0].moves[0].at
-    weight = own.mass_per_length * own.length * abs(float(gravity @ along)) / float(np.linalg.norm(along))
-    if (ratio := weight * own.length**2 / judged[0].stiffness) > 0.1:
-        hints.append(f"gravity acts along the chain, its weight is {ratio:.3g} EI/L^2: the frequencies are without it")
+    elif untwisted:
+        hints.append("torsion is not judged: joints and inertias are of no uniform shaft, give a scene with sections")
     radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9
@@ -167,8 +181,11 @@ def _hints(solids: list[Solid], gravity: Array, judged: list[Judged], beam: Beam
     return hints
 
 
-def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], out: Path) -> str:
-    """The file with stiffnesses `new` by joint and nothing else changed; returns a sentence. Raises InputError."""
+def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], out: Path, step: float) -> str:
+    """The file with stiffnesses `new` by joint, a time step, s, but for 0, and nothing else changed; what was written.
+
+    Raises InputError.
+    """
     edits, data = list[tuple[int, int, str]](), path.read_bytes()
     text = re.sub(rb"(?s)<!--.*?-->", lambda comment: b" " * len(comment[0]), data)
     if kind != "mujoco":
@@ -200,8 +217,15 @@ def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], ou
                 edits.append((*place, repr(new[joint]) if own else f' stiffness="{new[joint]!r}"'))
         if not alike:
             raise InputError(f"{path.name}: its joints are not in its text in order, write it by mj_saveLastXML first")
+    if step:
+        attribute = rb"<option\b[^>]*?\stimestep\s*=\s*[\"']([^\"']*)"
+        spots = list(re.finditer(rb"<max_step_size>([^<]*)" if kind == "sdf" else attribute, text))
+        edits += [(*spot.span(1), repr(step)) for spot in spots]
+        if not spots and (begun := re.search(rb"<mujoco\b[^>]*>", text)):
+            edits.append((begun.end(), begun.end(), f'\n<option timestep="{step!r}"/>'))
     for start, end, word in sorted(edits, reverse=True):
         data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:
         part.write_bytes(data)
-    return f"wrote {shown(str(out))}: other stiffnesses, nothing else"
+    what = ["other stiffnesses"] * bool(new or not step) + [f"the time step {with_unit(step, 's')}"] * bool(step)
+    return f"wrote {shown(str(out))}: {' and '.join(what)}, nothing else"

@@ -15,13 +15,13 @@ STRAIGHT = 1e-3
 
 
 class Line(NamedTuple):
-    """The chain in one bending plane, N joints with a link beyond each. SI.
+    """The chain in one bending plane or in torsion, N joints with a link beyond each. SI.
 
     A first link fixed to the wall has the joint '' of stiffness NaN. `links`, with the bodies fixed to them: length,
     mass, centre of mass from the joint, inertia about it, (N, 4). `solid`: inertias are those of prisms. `about`,
     `across`: directions of the hinges and of the other ones at right angles in the world. `deep`: square of the depth
     of the section across the hinges over that along them, by what is drawn and by inertias of prisms, NaN where
-    unknown. `ball`: the hinges are those of ball joints.
+    unknown. `ball`: the hinges are those of ball joints. `dashpots`, `armatures` of the hinges, (N,).
     """
 
     axis: Axis
@@ -33,6 +33,13 @@ class Line(NamedTuple):
     across: str
     deep: tuple[float, float]
     ball: bool
+    dashpots: Array
+    armatures: Array
+
+    @property
+    def turns(self) -> Axis:
+        """The axis of its chain alone: "torsion", or "bending" in either plane."""
+        return "torsion" if self.axis == "torsion" else "bending"
 
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
@@ -75,7 +82,7 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
 
 
 def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain in bending in each plane of its hinges. Raises InputError for what is no straight chain."""
+    """The chain in bending in each plane of its hinges, in torsion. Raises InputError for what is no straight chain."""
     parts = _chain(solids, name)
     mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
     places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
@@ -97,21 +104,24 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
     apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
-    for axis, about in zip(AXES[:2], turned[:2], strict=True):
+    for axis, about in zip(AXES, turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
         if not any(move.stiffness for moves in own for move in moves):
             continue
         for j, moves in enumerate(own[1:], 1):
-            if len(moves) != 1 or not moves[0].stiffness:
+            if len(moves) > 1 or (axis != "torsion" and not (moves and moves[0].stiffness)):
                 text = "has no hinge with a stiffness" if len(moves) < 2 else "has two hinges"
                 remedy = "give it one, or fix the body to the one before" if len(moves) < 2 else "give it one"
                 raise InputError(f"{name}: {shown(mains[j].name)} {text} about {_direction(about)}, {remedy}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
         joints = [moves[0].joint if moves else "" for moves in own]
+        others = [
+            np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")
+        ]
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
         seen = _direction(about), _direction(np.cross(along, about)), _deep(mains, along, about, solid)
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball))
+        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball, *others))
     return found
 
 

@@ -25,9 +25,9 @@ LIMITS = ("lower", "-"), ("upper", "")
 
 
 class Move(NamedTuple):
-    """A hinge at a place, m, about an axis in the world; `bound`: what acts on it besides its spring.
+    """A hinge at a place, m, about an axis in the world; `bound`: what acts on it besides its spring and dashpot.
 
-    A ball joint is three hinges of one name and stiffness.
+    `damping`: N m s, `armature`: inertia of the hinge, kg m^2. A ball joint is three hinges of one name and stiffness.
     """
 
     joint: str
@@ -35,6 +35,8 @@ class Move(NamedTuple):
     axis: Array
     stiffness: float
     bound: str = ""
+    damping: float = 0.0
+    armature: float = 0.0
 
 
 class Solid(NamedTuple):
@@ -54,19 +56,33 @@ class Solid(NamedTuple):
     shape: Array = np.zeros((3, 3))
 
 
-def read(path: Path) -> tuple[str, list[Solid], Array]:
-    """(root element: mujoco, sdf or robot; bodies, each after its parent; gravity, m/s^2). Raises InputError.
+class Setting(NamedTuple):
+    """Engine, integrator and time step, s, of a simulation; '' and nan: unknown. `note`: what is left out."""
 
-    Gravity of SDF and URDF is that of an empty world.
+    engine: str = ""
+    integrator: str = ""
+    step: float = np.nan
+    note: str = ""
+
+
+def read(path: Path) -> tuple[str, list[Solid], Array, Setting]:
+    """(root element: mujoco, sdf or robot; bodies, each after its parent; gravity, m/s^2; setting). Raises InputError.
+
+    Gravity of URDF, and of SDF without a world, is that of an empty world.
     """
-    gravity = np.array([0.0, 0.0, -9.81])
+    gravity, setting = np.array([0.0, 0.0, -9.81]), Setting()
     readable(path, "file")
     try:
         root = ElementTree.parse(path).getroot()
         if root.tag == "mujoco":
-            solids, gravity = _mjcf(path, root)
+            solids, gravity, setting = _mjcf(path, root)
         elif root.tag == "sdf":
             solids = _xml(next(root.iter("model"), root), None)
+            world = next(root.iter("world"), root)
+            gravity = np.array(_numbers(world, "gravity", "0 0 -9.81", 3))
+            # Gazebo classic runs type ode, which later versions take for any
+            engine = "Gazebo" if world.find("physics[@type='dart']") is not None else ""
+            setting = Setting(engine, "", float(_value(world, "physics/max_step_size") or np.nan))
         elif root.tag == "robot":
             solids = _xml(root, {one.get("reference", ""): one for one in root.findall("gazebo[springStiffness]")})
         else:
@@ -77,7 +93,7 @@ def read(path: Path) -> tuple[str, list[Solid], Array]:
     except (OSError, SyntaxError, ValueError, LookupError, TypeError, RuntimeError) as error:
         why = f"{error} is named and is not there" if isinstance(error, LookupError) else one_line(str(error))
         raise InputError(f"{path.name}: not readable ({why}): correct it there, or write it anew") from None
-    return root.tag, solids, gravity
+    return root.tag, solids, gravity, setting
 
 
 def _check(solids: list[Solid]) -> None:
@@ -86,8 +102,9 @@ def _check(solids: list[Solid]) -> None:
         raise InputError("it has no joints, give a chain of bodies with hinges and springs")
     for one in solids:
         for move in one.moves:
-            if not 0.0 <= move.stiffness < np.inf:
-                raise InputError(f"joint {shown(move.joint)}: stiffness = {move.stiffness!r}, give N m/rad, 0 or more")
+            for name, value, unit in (("stiffness", move.stiffness, "N m/rad"), ("damping", move.damping, "N m s")):
+                if not 0.0 <= value < np.inf:
+                    raise InputError(f"joint {shown(move.joint)}: {name} = {value!r}, give {unit}, 0 or more")
         if not (0.0 <= one.mass < np.inf and np.isfinite(one.inertia).all() and np.isfinite(one.centre).all()):
             raise InputError(f"{shown(one.name)}: its mass or inertia is negative or no number, give kg and kg m^2")
         if (spin := np.linalg.eigvalsh(one.inertia))[0] < -SPIN * spin[-1]:
@@ -116,34 +133,38 @@ def _compiled(path: Path, root: ElementTree.Element) -> Any:
         raise InputError(f"MuJoCo does not compile it, {text}") from None
 
 
-def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array]:
-    """The bodies at the angles where the springs have no moment, and gravity."""
+def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array, Setting]:
+    """The bodies at the angles where the springs have no moment, gravity, and how it runs."""
     model = _compiled(path, root)
     import mujoco
 
     if not model.njnt:
-        return [], np.array(model.opt.gravity)
+        return [], np.array(model.opt.gravity), Setting()
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos_spring
     mujoco.mj_forward(model, data)
     springs = np.reshape(model.jnt_stiffness, (model.njnt, -1))
-    bound = {int(dof): "has an armature" for dof in np.flatnonzero(model.dof_armature)}
+    dashpots = np.reshape(model.dof_damping, (model.nv, -1))
+    bound = {int(dof): "has a dashpot that is not linear" for dof in np.flatnonzero(dashpots[:, 1:].any(axis=1))}
     kinds = ("has an equality", *["has dry friction"] * 2, *["is at a limit"] * 2, *["has a contact"] * 9)
     for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
         bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
-    for at, n, spring in zip(model.tendon_adr, model.tendon_num, model.tendon_stiffness, strict=True):
-        bound |= {int(model.jnt_dofadr[i]): "has a tendon" for i in model.wrap_objid[at : at + n] if np.any(spring)}
+    for i, at in enumerate(model.tendon_adr):
+        acts, joints = model.tendon_stiffness[i], model.wrap_objid[at : at + model.tendon_num[i]]
+        acts = np.any(acts) or np.any(model.tendon_damping[i])
+        bound |= {int(model.jnt_dofadr[j]): "has a tendon" for j in joints if acts}
     for i, bias in enumerate(model.actuator_biasprm):
-        if bias[1] and model.actuator_trntype[i] == 0:
-            bound[int(model.jnt_dofadr[model.actuator_trnid[i, 0]])] = "has an actuator with a stiffness"
+        if bias[1:3].any() and model.actuator_trntype[i] == 0:
+            bound[int(model.jnt_dofadr[model.actuator_trnid[i, 0]])] = "has an actuator with a stiffness or a damping"
 
     def moves(body: int) -> Iterator[Move]:
         for j in range(int(model.body_jntadr[body]), int(model.body_jntadr[body] + model.body_jntnum[body])):
             kind, dof = int(model.jnt_type[j]), int(model.jnt_dofadr[j])
             for i, axis in enumerate([data.xaxis[j]] if kind > 1 else data.xmat[body].reshape(3, 3).T):
                 name, at, slide = model.joint(j).name or f"joint #{j}", data.xanchor[j].copy(), SLIDE * (kind in (0, 2))
-                yield Move(name, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, slide))
+                damping, armature = float(dashpots[dof + i, 0]), float(model.dof_armature[dof + i])
+                yield Move(name, at, axis.copy(), float(springs[j, 0]), bound.get(dof + i, slide), damping, armature)
 
     solids = []
     for b in range(1, model.nbody):
@@ -161,7 +182,11 @@ def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array]:
                 shape = max(shape, (turn * half**2) @ turn.T, key=np.trace)
         own_moves, centre = tuple(moves(b)), data.xipos[b].copy()
         solids.append(Solid(name, up, place, mass, centre, inertia, own_moves, radius, shape))
-    return solids, np.array(model.opt.gravity)
+    rule = mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_")
+    if rule == "EULER" and model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_EULERDAMP:
+        rule = "Euler without eulerdamp"
+    note = "the drag of its medium is left out" if model.opt.density or model.opt.viscosity else ""
+    return solids, np.array(model.opt.gravity), Setting("MuJoCo", rule, float(model.opt.timestep), note)
 
 
 def _value(one: ElementTree.Element | None, path: str) -> str:
@@ -293,4 +318,5 @@ def _moves(
         at_limit, rubs = low >= 0.0 or high <= 0.0, _numbers(joint, f"{within}dynamics/friction", "0")[0]
         bound = bound or "is at a limit" * (kind != "continuous" and at_limit) or "has dry friction" * bool(rubs)
         bound = bound or f"has a spring at rest at {reference:.4g} rad" * bool(stiffness and reference)
-        yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound)
+        damping = _numbers(joint, f"{within}dynamics/damping", "0")[0]
+        yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound, damping)

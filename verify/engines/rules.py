@@ -35,7 +35,7 @@ SAME = 1e-9
 
 
 class Judged(NamedTuple):
-    """A chain as it is and with correct joints, whose axis is "bending" in either plane.
+    """A chain as it is and with correct joints, whose axis is "bending" in either plane, or "torsion".
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
     of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
@@ -79,13 +79,6 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
         springs = np.where(np.isin(range(n), law.odd) | (np.arange(n) >= (3 if even else 1)), k, springs)
     beam = beam or _meant(line, expected, support, law.links)
 
-    def chain(springs: Array) -> RigidChain:
-        hinges = [() if np.isnan(one) else (Hinge("bending", float(one)),) for one in [*springs, 0.0]]
-        rows = zip(edges.tolist(), line.links.tolist(), strict=False)
-        links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
-        joints = tuple(map(Joint, edges.tolist(), hinges))
-        return RigidChain(beam, rule, joints, links, theory=theory)
-
     right = wall_label(best), *([] if even else [SERIES])
     wall = [rule] if rule not in right and support == "clamped" else []
     joints, links = _faults(line, expected, sum(one.mass for one in beam.mass), spacing, stiffness / reference)
@@ -96,7 +89,17 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
     names = [line.joints[j] for j in (*law.odd, *steps) if meant is None]
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
-    return Judged(line, chain(k), chain(springs), text, stiffness, springs, faults, links, advice, names)
+    present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
+    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names)
+
+
+def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
+    """A line with springs, (N,), N m/rad, as a chain about `line.turns`."""
+    edges = np.append(0.0, np.cumsum(line.links[:, 0])).tolist()
+    hinges = [() if np.isnan(one) else (Hinge(line.turns, float(one)),) for one in [*springs, 0.0]]
+    rows = zip(edges, line.links.tolist(), strict=False)
+    links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
+    return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)
 
 
 def _half_links(soft: Array) -> Array:

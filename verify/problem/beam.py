@@ -203,7 +203,7 @@ def in_plane(beam: Beam, axis: str) -> Beam:
 
 def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
     """Raise InputError unless a frequency is positive and its wavelength is not too short for the beam."""
-    check_number(field, frequency_hz, "hertz", above=1e-100)  # its square is a number
+    check_number(field, frequency_hz, "hertz", at_least=1e-100)  # its square is a number
     waves = sqrt(frequency_hz) / sqrt(2.0 * pi * beam.wave_constant) * beam.length
     if waves > 1e6:  # too many points, and their phase loses its digits
         raise InputError(

@@ -1,0 +1,57 @@
+"""Records of free vibration as lists of frequencies with damping."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+import verify
+from verify.errors import InputError
+
+STEEL = verify.Beam(
+    length=1.0, width=0.04, thickness=0.008, youngs_modulus=210e9, density=7850.0, supports=("clamped", "free")
+)
+FULL = [6.3655, 39.9460, 111.985]  # 20 links with EI/l at the wall, 4 to 5 digits
+RATIOS = [0.008, 0.011, 0.015]
+
+
+@pytest.fixture
+def ring():
+    """(n, 2): times, s, and the tip, m, of the chain that rings in three modes."""
+    times, tip = np.arange(0.0, 1.9, 5e-4), 0.002
+    for k, (hz, zeta, size) in enumerate(zip(FULL, RATIOS, (1e-3, 3e-4, 1e-4), strict=True)):
+        omega = 2.0 * pi * hz
+        tip = tip + size * np.exp(-zeta * omega * times) * np.cos(omega * np.sqrt(1.0 - zeta**2) * times + k)
+    return np.stack([times, tip + 1e-6 * np.random.default_rng(2).standard_normal(len(times))], axis=1)
+
+
+@pytest.mark.parametrize(
+    ("head", "scale", "between"),
+    [("time [ms],tip [m]\n", 1e3, ","), ("", 1.0, " "), ("# t; w\n", 1.0, ";"), ("Time (s)\ttip\n", 1.0, "\t")],
+)
+def test_a_record_names_the_wall_joint_and_its_damping(tmp_path, ring, head, scale, between):
+    path = tmp_path / "ring.csv"
+    rows = [f"{scale * t:.9g}{between}{y:.9g}" for t, y in ring]
+    path.write_text(head + "\n".join(rows) + "\n")
+    result = verify.compare_frequencies(STEEL, path, count=20)
+    assert result.data["best"]["wall"] == "full"
+    assert not result.data["passed"]
+    assert [mode["undamped_hz"] for mode in result.data["record"]] == pytest.approx(FULL, rel=1e-4)
+    assert [mode["zeta"] for mode in result.data["record"]] == pytest.approx(RATIOS, rel=2e-2)
+
+
+def test_a_list_with_mode_numbers_is_no_record(tmp_path):
+    path = tmp_path / "list.csv"
+    hertz = verify.ExactModel(STEEL).modes(18).frequencies_hz
+    path.write_text("".join(f"{i},{hz:.6f}\n" for i, hz in enumerate(hertz, start=1)))
+    result = verify.compare_frequencies(STEEL, path)
+    assert "record" not in result.data
+    assert result.data["passed"]
+
+
+def test_noise_alone_is_refused(tmp_path):
+    path = tmp_path / "noise.csv"
+    values = np.random.default_rng(4).standard_normal(300)
+    path.write_text("t,y\n" + "".join(f"{0.01 * i:.2f},{y:.6f}\n" for i, y in enumerate(values)))
+    with pytest.raises(InputError, match="rings"):
+        verify.compare_frequencies(STEEL, path)
