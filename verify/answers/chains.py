@@ -3,30 +3,20 @@
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from math import hypot, inf, isfinite
+from math import inf, isfinite
 from pathlib import Path
-
-import numpy as np
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
-from verify.engines.choice import (
-    Candidate,
-    choose,
-    default_steps,
-    largest_mode,
-    step_errors,
-    trade,
-    with_armature,
-)
+from verify.engines.choice import Candidate, choose, default_steps, largest_mode, trade
 from verify.engines.damping import Asked, asked, damped
 from verify.engines.describe import describe
 from verify.engines.description import MOST_LINKS, RigidChain, Steps
-from verify.engines.integrators import integrator_of, scheme_of
-from verify.engines.steps import simulated_chain
+from verify.engines.integrators import integrator_of
+from verify.engines.running import chain_runs
 from verify.engines.writers import data, table, write
 from verify.errors import InputError
 from verify.formatting import with_unit
@@ -37,12 +27,8 @@ from verify.validation import check_integer, check_number
 
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
-
-
 AUTOMATIC = {"MuJoCo": ("implicitfast", "discrete")}
 """Integrators that are tried in turn where none is named; of other engines the first in `INTEGRATORS`."""
-NOTICED = 0.1
-"""Damping that is not meant, over that which is and over the error of frequency, from which it is named."""
 MOST_TRIED = 30
 """Links beyond the fewest, one more at a time, among which those for a step are sought."""
 
@@ -63,9 +49,9 @@ def engine_chain(
 ) -> Result:
     """Joints and links of a beam as a chain of rigid bodies, with the frequency errors of exactly this chain.
 
-    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` up to `mode`. `wall`: rule
-    of the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request in
-    words (`engines.damping.asked`). `step`, s, of `engine` "NAME" or "NAME:INTEGRATOR": chooses links, integrator and
+    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` up to `mode`. `wall`: rule of
+    the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request
+    in words (`engines.damping.asked`). `step`, s, of `engine` "NAME" or "NAME:INTEGRATOR": chooses links, integrator,
     armature by which the chain runs, with all errors up to `mode`, of the damping ratio too, within `error`. Without
     it, the file of an engine has a step of `engines.choice.default_steps`. `path`: file to write, .xml (MJCF), .sdf,
     .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links (m, kg, kg m^2) and
@@ -176,41 +162,6 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
     return Table("Links for the step", columns, each, [note])
 
 
-def _as_it_runs(chain: RigidChain, mode: int, error: float) -> tuple[Table, list[Margin], list[str]]:
-    """(modes as meant and as simulated, margins of the time step, warnings) of a chain for its steps."""
-    steps = chain.steps
-    assert steps
-    columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".6g") for name in ("meant", "simulated"))]
-    names = ("damping meant", "damping of the file", "damping simulated")
-    columns += [
-        Column("error", format="+.2g", percent=True),
-        *(Column(name, format=".3g", percent=True) for name in names),
-    ]
-    rows, margins, warnings = list[tuple[object, ...]](), list[Margin](), list[str]()
-    scheme, bare = scheme_of(*steps[1:]), chain
-    if any(hinge.armature for joint in chain.joints for hinge in joint.hinges):
-        bare = with_armature(chain, np.zeros(len(chain.unknowns(chain.axes[0]))))
-    for axis in chain.axes:
-        simulated, whole = (simulated_chain(one, steps.step, scheme, axis) for one in (chain, bare))
-        run, file, first, worst = simulated.modes, whole.modes, whole.rigid, (0.0, 1)
-        for i, (_, time, both, more) in enumerate(zip(*step_errors(bare, chain, axis, mode), strict=True)):
-            hertz, zeta = float(run.hz[first + i]), float(run.zeta[first + i])
-            values = hertz / (1.0 + both), hertz, both, zeta - more, float(file.file_zeta[first + i]), zeta
-            shown = (round(float(value), 12) + 0.0 if isfinite(value) else None for value in values)  # no -0
-            rows.append((axis, i + 1, *shown))
-            size = hypot(time, more)
-            worst = max(worst, (size if isfinite(size) else inf, i + 1))
-            if abs(more) > NOTICED * max(zeta - more, error):
-                text = f"{per_cent(zeta)} damping at mode {i + 1} in {axis} in place of {per_cent(zeta - more)}"
-                warnings.append(f"{text}, by the integrator")
-        name, fine = f"time step of {with_unit(steps.step, 's')}", max(error, FINE)
-        where = f"at mode {worst[1]} in {axis}"
-        margins.append(
-            Margin(name=name, size=worst[0], where=where, remedy="give a shorter step", fine=fine, limit=fine)
-        )
-    return Table("As it runs", columns, rows, chain.remarks), margins, warnings
-
-
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
     """The smallest number of links that is within the error at all modes up to one, and so is the next one tried."""
     count, first = max(len(beam.pieces), mode + 1, 2), 0
@@ -257,8 +208,8 @@ def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [table(chain), Table("Frequencies", columns, rows)]
     if chain.steps:
-        ran, more, texts = _as_it_runs(chain, mode, error)
-        tables, margins, warnings = [*tables, ran], [*margins, *more], [*warnings, *texts]
+        ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
+        tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
     else:
         warnings += chain.remarks
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

@@ -6,7 +6,7 @@ Everything holds for small vibration about rest.
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from math import ceil, exp, floor, inf, isfinite, log10, sqrt
+from math import ceil, exp, inf, isfinite, sqrt
 from typing import NamedTuple
 
 import msgspec
@@ -19,7 +19,7 @@ from verify.engines.description import Axis, Joint, RigidChain, Steps
 from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme, scheme_of
 from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError
-from verify.formatting import with_unit
+from verify.formatting import floored, with_unit
 
 MARGIN = 0.9
 """Largest fraction of the stability limit: at the limit a motion does not decay."""
@@ -142,14 +142,14 @@ class Candidate(NamedTuple):
         return self.chain.count
 
 
-def with_armature(chain: RigidChain, inertias: Array) -> RigidChain:
+def with_armature(chain: RigidChain, inertias: Array, remark: str) -> RigidChain:
     """The chain with inertias, (n,), kg m^2, on the hinges about one axis, in the order of its unknowns."""
-    axis, joints = chain.axes[0], list(chain.joints)
-    for (name, j, _), inertia in zip(chain.unknowns(axis), inertias.tolist(), strict=True):
+    joints = list(chain.joints)
+    for (name, j, _), inertia in zip(chain.unknowns(chain.axes[0]), inertias.tolist(), strict=True):
         if not name.startswith("slide"):
             hinge = msgspec.structs.replace(joints[j].hinges[0], armature=inertia)
             joints[j] = Joint(joints[j].position, (hinge,))
-    return replace(chain, joints=tuple(joints))
+    return replace(chain, joints=tuple(joints), remarks=(*chain.remarks, remark), meant=chain)
 
 
 @one_blas_thread()
@@ -162,19 +162,18 @@ def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatur
     for chain in (replace(each, steps=steps) for each in chains):
         every = simulated_chain(chain, step, scheme)
         betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
-        heavy = armatures and chain.damping and not (chain.in_space or chain.closed or chain.compensated)
+        heavy = armatures and chain.damping and not (chain.in_space or chain.closed or chain.meant)
         for beta in betas if heavy and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS) else betas[:1]:
-            inertias = armature(every, beta) if beta else np.zeros(1)
-            made = with_armature(chain, inertias) if beta else chain
+            made, run = chain, every
             if beta:
                 text = ARMATURE.format(beta, "-" if scheme is IMPLICIT_DASHPOTS else "+")
-                made = replace(made, remarks=(*chain.remarks, text))
-            run = simulated_chain(made, step, scheme) if beta else every
+                made = with_armature(chain, armature(every, beta), text)
+                run = simulated_chain(made, step, scheme)
             # beta has its margin already, and its limit is a few percent beyond its own step
             stable = step <= (1.0 if beta else MARGIN) * run.limit
-            if beta and not (stable and inertias.any()):
+            if beta and not (stable and (run.mass != every.mass).any()):
                 continue
-            errors = [step_errors(chain, made, axis, modes) for axis in chain.axes]
+            errors = [step_errors(made, steps, axis, modes) for axis in chain.axes]
             each = [np.stack([abs(one[0]), np.hypot(one[1], one[3]), abs(one[2])]).max(axis=0) for one in errors]
             shared = min(map(len, each))
             worst = np.max([one[:shared] for one in each], axis=0)
@@ -185,22 +184,16 @@ def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatur
     return found
 
 
-def step_errors(meant: RigidChain, run: RigidChain, axis: Axis, modes: int) -> tuple[Array, Array, Array, Array]:
-    """Of the first elastic modes about an axis, (m,): relative errors by space, by time, by both; damping not meant.
-
-    `run` is `meant` for its steps, with armature. Compensated, the ratio of mode 1 is meant, more by the frequency.
-    """
-    assert run.steps
-    scheme, step = scheme_of(run.steps.engine, run.steps.integrator), run.steps.step
-    plain = simulated_chain(meant, step, scheme, axis)
-    after = plain.modes if run is meant else simulated_chain(run, step, scheme, axis).modes
-    part = slice(plain.rigid, plain.rigid + modes)
-    omega = plain.modal[0][part]
-    space = omega / (2.0 * np.pi) / meant.exact_hz(axis, len(omega)) - 1.0
-    zeta = meant.damping * omega / omega[0] if meant.compensated else plain.modes.file_zeta[part]
+def step_errors(chain: RigidChain, steps: Steps, axis: Axis, modes: int) -> tuple[Array, Array, Array, Array]:
+    """Of the first elastic modes about an axis, (m,): relative errors by space, by time, by both; damping not meant."""
+    scheme = scheme_of(steps.engine, steps.integrator)
+    meant, run = (simulated_chain(one, steps.step, scheme, axis) for one in (chain.meant or chain, chain))
+    part, file, after = slice(meant.rigid, meant.rigid + modes), meant.modes, run.modes
+    omega = meant.modal[0][part]
+    space = omega / (2.0 * np.pi) / chain.exact_hz(axis, len(omega)) - 1.0
     with np.errstate(divide="ignore", invalid="ignore"):  # an overdamped mode has no frequency
-        time = after.hz[part] / plain.modes.file_hz[part] - 1.0
-    return space, time, (1.0 + space) * (1.0 + time) - 1.0, after.zeta[part] - zeta
+        time = after.hz[part] / file.file_hz[part] - 1.0
+    return space, time, (1.0 + space) * (1.0 + time) - 1.0, after.zeta[part] - file.file_zeta[part]
 
 
 def choose(candidates: Sequence[Candidate], mode: int, within: float) -> Candidate | None:
@@ -237,14 +230,8 @@ def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, 
         found.append(0.5 * run.limit)
         with suppress(InputError):
             found.append(largest_step(run, mode, within))
+    if not 0.0 < min(found) < inf:
+        raise InputError(f"integrator = {setting!r}: no step of it is stable and accurate, choose another")
     text = f"time step: at most half the errors of {per_cent(within)} at mode {mode}"
     text += f" and half the stability limit, {with_unit(limit, 's')}" * isfinite(limit)
     return replace(chain, steps=Steps(floored(min(found), 2), engine, setting), remarks=(*chain.remarks, text))
-
-
-def floored(value: float, digits: int) -> float:
-    """The number of so many digits that is at most `value`; what is not finite or positive as it is."""
-    if not (isfinite(value) and value > 0.0):
-        return value
-    unit = 10.0 ** (floor(log10(value)) + 1 - digits)
-    return float(f"{floor(value / unit * (1.0 + 1e-9)) * unit:.{digits}g}")

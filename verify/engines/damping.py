@@ -78,7 +78,7 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     drag &= bool(steps and steps.integrator in DRAGGED) and not chain.in_space
     if request.compensated and not (steps and isfinite(steps.step)):
         raise InputError("damping: it is compensated for a time step, give step and engine")
-    first, fits, remarks = 0.0, dict[Axis, Rayleigh](), list(chain.remarks)
+    first, fits, factor, remarks = 0.0, dict[Axis, Rayleigh](), dict[Axis, float](), list(chain.remarks)
     for axis in chain.axes:
         every = 2.0 * pi * chain.frequencies_hz(axis, None if request.in_hz else int(max(request.at)))
         if not request.in_hz and len(every) < max(request.at):
@@ -90,18 +90,17 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
             fit = rayleigh(omega, request.ratios, drag=drag, within=request.within)
         fits[axis], times[axis] = fit, fit.dashpots
         if request.compensated and steps and scheme:
-            times[axis] = 2.0 * compensated(scheme, ratio, omega[0], steps.step) / omega[0]
+            factor[axis] = compensated(scheme, ratio, omega[0], steps.step) / ratio
         first = first or 0.5 * float(fit.dashpots * every[0] + fit.drag / every[0])
-    if request.compensated:
-        remarks.append(f"dashpots compensated: the asked decay at mode {request.at[0]:g}, at this step alone")
     if len(request.at) > 1:
-        worst = max(float(abs(fit.deviation).max()) for fit in fits.values())
+        worst = round(max(float(abs(fit.deviation).max()) for fit in fits.values()), 9)  # rounding
         means = "drag and dashpots" if drag else "dashpots alone"
-        worst = round(worst, 9)  # rounding
         remarks.append(f"damping by {means}, {per_cent(worst)} off what was asked at worst; Maxwell branches left out")
-    chain = with_dashpots(
-        replace(chain, remarks=tuple(remarks), compensated=request.compensated), times, float(f"{first:.12g}")
-    )
+    chain = with_dashpots(replace(chain, remarks=tuple(remarks)), times, float(f"{first:.12g}"))
+    if factor:
+        text = f"dashpots compensated: the asked decay at mode {request.at[0]:g}, at this step alone"
+        made = with_dashpots(chain, {axis: factor[axis] * time for axis, time in times.items()}, chain.damping)
+        return replace(made, remarks=(*remarks, text), meant=chain)
     if not (alpha := fits["bending"].drag):
         return chain
     run = simulated_chain(chain, 1.0, TRAPEZOIDAL)

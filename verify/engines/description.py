@@ -98,7 +98,7 @@ class RigidChain:
     `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
     at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
     `theory`: of the exact beam. `viscosity`, N s/m^2, of MuJoCo's medium: drag. `steps`: for which it is made, with
-    what holds for them in `remarks`; `compensated`: the dashpots are those by which the simulation has the ratio.
+    what holds for them in `remarks`; `meant`: without their armature and compensation.
     """
 
     beam: Beam
@@ -113,7 +113,7 @@ class RigidChain:
     viscosity: float = 0.0
     steps: Steps | None = None
     remarks: tuple[str, ...] = ()
-    compensated: bool = False
+    meant: "RigidChain | None" = None
     __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
