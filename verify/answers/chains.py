@@ -120,8 +120,9 @@ def _for_step(
             return chosen, rows
         fine = [one.chain for one in found if len(one.space) >= mode and abs(one.space[mode - 1]) <= 0.5 * error]
         for one in fine[:1]:
-            begun = default_steps(one, steps, mode, error).steps
-            largest = max(largest, (begun.step if begun else 0.0, steps.integrator))
+            with suppress(InputError):
+                begun = default_steps(one, steps, mode, error).steps
+                largest = max(largest, (begun.step if begun else 0.0, steps.integrator))
         if len(request.ratios) == 1 and request.ratios[0] and not (request.in_hz or request.compensated):
             with suppress(InputError):
                 other = [damped(one, request._replace(compensated=True), steps) for one in plain]

@@ -41,19 +41,21 @@ class Rayleigh(NamedTuple):
     deviation: Array
 
 
-def rayleigh(omega: Sequence[float], zeta: Sequence[float], *, drag: bool = True, within: float = 1.0) -> Rayleigh:
+def rayleigh(
+    omega: Sequence[float], zeta: Sequence[float], *, drag: Array | bool = True, within: float = 1.0
+) -> Rayleigh:
     """Drag and dashpots, or dashpots alone, of ratios at frequencies (n,), 1/s: least squares of relative deviations.
 
-    One ratio is exact by dashpots, two by both where neither is negative. Raises InputError where a deviation is beyond
-    `within`.
+    One ratio is exact by dashpots, two by both where neither is negative. `drag`: whether there is, or that at each
+    frequency over the first. Raises InputError where a deviation is beyond `within`.
     """
     from scipy.optimize import nnls
 
     w, z = np.asarray(omega, dtype=float), np.asarray(zeta, dtype=float)
-    rows = np.stack([0.5 / (w * z), 0.5 * w / z], axis=1) * [drag and len(w) > 1, 1.0]
+    rows = np.stack([0.5 * drag * (len(w) > 1) / (w * z), 0.5 * w / z], axis=1)
     scale = np.where(rows.any(axis=0), abs(rows).max(axis=0), 1.0)
     alpha, b = nnls(rows / scale, np.ones(len(w)))[0] / scale
-    return _checked(Rayleigh(float(alpha), float(b), rows @ [alpha, b] - 1.0), w, within, drag)
+    return _checked(Rayleigh(float(alpha), float(b), rows @ [alpha, b] - 1.0), w, within, bool(np.any(drag)))
 
 
 def band(low: float, high: float, zeta: float, *, drag: bool = True, within: float = 1.0) -> Rayleigh:
@@ -191,8 +193,8 @@ def step_errors(chain: RigidChain, steps: Steps, axis: Axis, modes: int) -> tupl
     part, file, after = slice(meant.rigid, meant.rigid + modes), meant.modes, run.modes
     omega = meant.modal[0][part]
     space = omega / (2.0 * np.pi) / chain.exact_hz(axis, len(omega)) - 1.0
-    with np.errstate(divide="ignore", invalid="ignore"):  # an overdamped mode has no frequency
-        time = after.hz[part] / file.file_hz[part] - 1.0
+    hertz = file.file_hz[part]  # 0 of an overdamped mode
+    time = np.divide(after.hz[part], hertz, out=np.ones(len(hertz)), where=hertz > 0.0) - 1.0
     return space, time, (1.0 + space) * (1.0 + time) - 1.0, after.zeta[part] - file.file_zeta[part]
 
 
@@ -220,7 +222,7 @@ def largest_step(chain: Simulated, mode: int, within: float) -> float:
 def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, within: float = 0.01) -> RigidChain:
     """The chain for the largest step of an integrator, or of MuJoCo's, that `largest_step` finds about every axis.
 
-    An overdamped or missing mode leaves half the stability limit.
+    Of the modes up to `mode` that are there and not overdamped.
     """
     engine, setting = steps[1:] if steps else ("MuJoCo", "implicitfast" if chain.damping else "RK4")
     found, limit, scheme = [inf], inf, scheme_of(engine, setting)
@@ -228,10 +230,11 @@ def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, 
         run = simulated_chain(chain, 1.0, scheme, axis)
         limit = min(limit, run.limit)
         found.append(0.5 * run.limit)
-        with suppress(InputError):
-            found.append(largest_step(run, mode, within))
+        for number in range(1, mode + 1):
+            with suppress(InputError):
+                found.append(largest_step(run, number, within))
     if not 0.0 < min(found) < inf:
         raise InputError(f"integrator = {setting!r}: no step of it is stable and accurate, choose another")
-    text = f"time step: at most half the errors of {per_cent(within)} at mode {mode}"
+    text = f"time step: at most half the errors of {per_cent(within)} up to mode {mode}"
     text += f" and half the stability limit, {with_unit(limit, 's')}" * isfinite(limit)
     return replace(chain, steps=Steps(floored(min(found), 2), engine, setting), remarks=(*chain.remarks, text))

@@ -5,6 +5,8 @@ from dataclasses import replace
 from math import isfinite, pi
 from typing import NamedTuple
 
+import numpy as np
+
 from verify.analysis.verdict import per_cent
 from verify.engines.choice import Rayleigh, band, compensated, rayleigh
 from verify.engines.description import Axis, RigidChain, Steps, with_dashpots
@@ -79,6 +81,9 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     if request.compensated and not (steps and isfinite(steps.step)):
         raise InputError("damping: it is compensated for a time step, give step and engine")
     first, fits, factor, remarks = 0.0, dict[Axis, Rayleigh](), dict[Axis, float](), list(chain.remarks)
+    run = simulated_chain(chain, 1.0, TRAPEZOIDAL, "bending")
+    shapes = run.modal[2][:, run.rigid :]  # of unit modal mass
+    sizes = np.sum(shapes * (replace(chain, viscosity=1.0).drag() @ shapes), axis=0)
     for axis in chain.axes:
         every = 2.0 * pi * chain.frequencies_hz(axis, None if request.in_hz else int(max(request.at)))
         if not request.in_hz and len(every) < max(request.at):
@@ -87,7 +92,8 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
         if len(omega) > len(request.ratios):
             fit = band(omega[0], omega[1], ratio, drag=drag, within=request.within)
         else:
-            fit = rayleigh(omega, request.ratios, drag=drag, within=request.within)
+            shares = np.array([1.0 if request.in_hz else sizes[int(hz) - 1] / sizes[0] for hz in request.at])
+            fit = rayleigh(omega, request.ratios, drag=shares * drag, within=request.within)
         fits[axis], times[axis] = fit, fit.dashpots
         if request.compensated and steps and scheme:
             factor[axis] = compensated(scheme, ratio, omega[0], steps.step) / ratio
@@ -101,9 +107,4 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
         text = f"dashpots compensated: the asked decay at mode {request.at[0]:g}, at this step alone"
         made = with_dashpots(chain, {axis: factor[axis] * time for axis, time in times.items()}, chain.damping)
         return replace(made, remarks=(*remarks, text), meant=chain)
-    if not (alpha := fits["bending"].drag):
-        return chain
-    run = simulated_chain(chain, 1.0, TRAPEZOIDAL)
-    shape = run.modal[2][:, run.rigid]
-    # of unit modal mass: exact at mode 1, in shorter waves the rotation of the links adds to it
-    return replace(chain, viscosity=alpha / float(shape @ replace(chain, viscosity=1.0).drag() @ shape))
+    return replace(chain, viscosity=float(fits["bending"].drag / sizes[0]))
