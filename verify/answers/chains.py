@@ -134,8 +134,8 @@ def _for_step(
     text = f"step = {with_unit(step, 's', '.6g')}: in {named} no chain of {span} links runs within {per_cent(error)} "
     text += f"up to mode {mode}"
     if not first.stable:
-        text += f", {first.links} links diverge (omega_max h = {first.omega_max * step:.3g}, "
-        text += f"limit {first.omega_max * first.limit:.3g})"
+        text += f", {first.links} links {'diverge' if step > first.limit else 'nearly diverge'} "
+        text += f"(omega_max h = {first.omega_max * step:.3g}, limit {first.omega_max * first.limit:.3g})"
     if last.stable and len(last.space) >= mode:
         errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
         text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
@@ -153,8 +153,9 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
     each = list[tuple[object, ...]]()
     for one in (row for row in rows if abs(row.links - chosen.links) <= 2 and len(row.space) >= mode):
         assert one.chain.steps
-        fate = "runs" if one.worst[mode - 1] <= error else f"is beyond {per_cent(error)}" if one.stable else "diverges"
-        fate = "is chosen" if one is chosen else fate
+        fate = "diverges" if one.chain.steps.step > one.limit else "nearly diverges"
+        fate = f"is beyond {per_cent(error)}" if one.stable else fate
+        fate = "is chosen" if one is chosen else "runs" if one.worst[mode - 1] <= error else fate
         figures = (float(values[mode - 1]) for values in (one.space, one.time, one.error, one.numerical))
         limit = one.limit if isfinite(one.limit) else None
         shown = [value if isfinite(value) and one.stable else None for value in figures]

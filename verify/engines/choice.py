@@ -27,6 +27,8 @@ FOURTH_ORDER = 1.0 / 12.0
 """Newmark's beta whose frequencies are of order 4: less armature costs accuracy and wins no step."""
 
 
+WEIGHTED = "MuJoCo", "Drake", "Newton"
+"""Engines whose joints have an armature."""
 ARMATURE = (
     "armature {:.3g} h^2 k {} h c/2: for this step alone, with the dashpots, in one plane, joint angles up to 0.3 rad "
     "(measured at h omega_max up to 12); undamped or about several axes 0.1 rad diverges"
@@ -164,7 +166,8 @@ def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatur
     for chain in (replace(each, steps=steps) for each in chains):
         every = simulated_chain(chain, step, scheme)
         betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
-        heavy = armatures and chain.damping and not (chain.in_space or chain.closed or chain.meant)
+        heavy = armatures and steps.engine in WEIGHTED and chain.damping
+        heavy = heavy and not (chain.in_space or chain.closed or chain.meant)
         for beta in betas if heavy and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS) else betas[:1]:
             made, run = chain, every
             if beta:

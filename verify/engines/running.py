@@ -133,7 +133,11 @@ def chain_runs(chain: RigidChain, steps: Steps, modes: int, within: float) -> "t
     rows, step = [row for one in motions for row in one.rows()], with_unit(steps.step, "s")
     margin, warnings = _error(rows, len(motions) > 1, "the integrator", within)
     words = {"name": f"time step of {step}", "remedy": "give a shorter step"}
-    return _table(rows, chain.remarks), msgspec.structs.replace(margin, **words), warnings
+    text = "the far end is held by an equality, which acts after the dashpots: with them to about 1e-3 of f"
+    notes = [*chain.remarks, *[text] * (steps.engine == "MuJoCo" and chain.closed and chain.damping > 0.0)]
+    remark = integrator_of(*steps[1:]).remark
+    notes += [f"{' '.join(steps[1:])}: {remark}"] if remark and steps.engine != "MuJoCo" else []
+    return _table(rows, notes), msgspec.structs.replace(margin, **words), warnings
 
 
 def _accurate(motions: Sequence[Motion], within: float) -> list[float]:
