@@ -64,16 +64,15 @@ class Engine:
         return bool(any(one.number for one in self.data.warning)) or not abs(self.data.qpos).max() < 1e-5
 
 
-DISCRETE, EXPLICIT = "MuJoCo:discrete", "mujoco:Euler without eulerdamp"
 FILES = {  # step, mode, damping, other options; the mode that vibrates, its ratio as asked, within
     "plain": (2e-3, 1, "1%", {}, 1, 0.01, 2e-5),
     "armature": (2e-3, 1, "1%", {"count": 8}, 1, 0.01, 2e-5),
     "two modes": (4e-4, 2, "1% 2% at 1,2", {}, 2, 0.02, 6e-5),
     "band": (2e-4, 2, "2% 5-50Hz within 30%", {}, 2, 0.02, 6e-3),
     "at a mode": (2e-4, 2, "1% at 2", {"engine": "mujoco:RK4"}, 2, 0.01, 2e-5),
-    "compensated": (1e-3, 1, "3% compensated", {"engine": DISCRETE}, 1, 0.03, 3e-5),
+    "compensated": (1e-3, 1, "3% compensated", {"engine": "MuJoCo:discrete"}, 1, 0.03, 3e-5),
     "undamped": (2e-3, 1, 0.0, {}, 1, 0.0, 1e-6),
-    "explicit dashpots": (1e-4, 2, 0.001, {"engine": EXPLICIT}, 1, 0.001, 1e-5),
+    "explicit dashpots": (1e-4, 2, 0.001, {"engine": "mujoco:Euler without eulerdamp"}, 1, 0.001, 1e-5),
     "in space": (5e-5, 1, 0.01, {"in_space": True}, 1, 0.01, 1e-4),
     "largest step": (None, 3, 0.02, {"count": 8}, 1, 0.02, 1e-4),
     "largest step of RK4": (None, 3, 0.0, {"count": 8}, 1, 0.0, 1e-6),
@@ -139,8 +138,6 @@ def test_armature_belongs_to_the_step_and_to_the_scheme(engine, sign):
     assert 1 / 12 <= beta <= 1 / 4
     with pytest.raises(InputError, match="diverge"):  # without dashpots it is not offered
         engine_chain(STEEL, 6, mode=1, step=step, engine=engine)
-    with pytest.raises(InputError, match="diverge"):  # nor in space
-        engine_chain(STEEL, 6, mode=1, step=step, engine=engine, damping=0.0006, in_space=True)
 
 
 def test_largest_step_without_one():
@@ -167,15 +164,12 @@ def test_ratios_as_asked():
         return modes.file_zeta[:3]
 
     assert ratios("1.5%") == pytest.approx(0.015 * omega[:3] / omega[0], rel=1e-8)
-    assert ratios(0.015) == pytest.approx(ratios("0.015"), rel=1e-12)
     assert ratios("2% at 3") == pytest.approx(0.02 * omega[:3] / omega[2], rel=1e-8)
     first, asked_for = omega[:2], np.array([0.01, 0.07])
     fitted = sum(first / asked_for) / sum((first / asked_for) ** 2)
     assert ratios("1% 7% at 1,2 within 60%")[:2] == pytest.approx(fitted * first, rel=1e-7)
-    hertz = f"2% at {omega[1] / (2 * pi):.12g}Hz"
-    assert ratios(hertz) == pytest.approx(ratios("2% at 2"), rel=1e-9)
+    assert ratios(f"2% at {omega[1] / (2 * pi):.12g}Hz") == pytest.approx(ratios("2% at 2"), rel=1e-9)
     assert ratios("3% 10-14 Hz") == pytest.approx(0.03 * omega[:3] / (2 * pi * 12), rel=1e-8)  # of the mean
-    assert damped(chain, asked("0"), None) is chain
 
 
 REFUSED = {
@@ -184,8 +178,6 @@ REFUSED = {
     "--step 1ms --engine Gazebo --damping 5% --mode 1": ("compensated", "2.1 %"),
     "--step 1ms --engine Gazebo:DART --space --mode 1": ("in one plane",),
     "--step 1ms": ("engine",),
-    "--step 1 --engine newton:XPBD": ("iterations",),
-    "--damping 1%,2%": ("damping",),
     "--damping lots": ("1% at 2",),
     "--damping '1% compensated'": ("step",),
     "--damping '1% at 9' --count 5": ("9",),

@@ -46,27 +46,30 @@ def asked(damping: str | float) -> Asked:
 
     "compensated": that the ratio is of the simulation at its step; "within 40%": a deviation that is accepted.
     """
-    if not isinstance(damping, str):
-        check_number("damping", damping, "damping ratio, 0 means none", at_least=0, below=1)
-        return Asked((float(damping),))
-    if not (form := _FORM.fullmatch(damping.strip())):
-        raise InputError(f"damping = {shown(damping)}: give {EXAMPLES}")
     try:
-        ratios = tuple(float(word.rstrip("%")) / (100.0 if "%" in word else 1.0) for word in re.split("[ ,]+", form[1]))
-        at = tuple(map(float, re.split("[ ,]+", form[2]) if form[2] else form.group(4, 5) if form[4] else "1"))
-        within = float(form[7].rstrip("%")) / (100.0 if "%" in form[7] else 1.0) if form[7] else PERMITTED
-    except ValueError:
-        raise InputError(f"damping = {shown(damping)}: give {EXAMPLES}") from None
+        form = _FORM.fullmatch(str(damping).strip())
+        found = [_numbers(part) for part in form.group(1, 2, 4, 5, 7)] if form else []
+    except ValueError:  # 1.2.3
+        found = []
+    if not (form and found):
+        raise InputError(f"damping = {shown(damping)}: give {EXAMPLES}")
+    ratios, modes, low, high, within = found
     for ratio in ratios:
         check_number("damping", ratio, "damping ratio, 0 means none", at_least=0, below=1)
-    request = Asked(ratios, at, bool(form[3] or form[4]), bool(form[6]), within)
-    if not (form[4] and len(ratios) == 1 and 0.0 < at[0] < at[1]) and (form[4] or len(at) != len(ratios)):
+    request = Asked(ratios, modes or low + high or (1.0,), bool(form[3] or low), bool(form[6]), *within)
+    alike = len(ratios) == 1 and low < high if low else len(ratios) == len(request.at)
+    alike &= 0.0 not in request.at and (request.in_hz or not any(mode % 1.0 for mode in request.at))
+    if not alike or (len(ratios) > 1 and not all(ratios)):
         raise InputError(f"damping = {shown(damping)}: give a ratio for each mode, or one for a band: {EXAMPLES}")
-    if not request.in_hz and any(mode < 1.0 or mode % 1.0 for mode in at):
-        raise InputError(f"damping = {shown(damping)}: give modes from 1, or frequencies with Hz")
-    if (len(ratios) > 1 and not all(ratios)) or (request.compensated and (len(ratios) > 1 or request.in_hz)):
-        raise InputError(f"damping = {shown(damping)}: give ratios above 0, and compensate that of one mode alone")
+    if request.compensated and (len(ratios) > 1 or request.in_hz):
+        raise InputError(f"damping = {shown(damping)}: compensate the ratio of one mode alone")
     return request
+
+
+def _numbers(text: str | None) -> tuple[float, ...]:
+    """Numbers, also in per cent."""
+    words = re.split("[ ,]+", text) if text else []
+    return tuple(float(word.rstrip("%")) / (100.0 if "%" in word else 1.0) for word in words)
 
 
 def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool = False) -> RigidChain:
