@@ -84,11 +84,9 @@ def engine_chain(
 
 
 def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> list[int]:
-    """Numbers of links from the fewest on, up to those that leave a quarter of the error, and one less."""
+    """Numbers of links from one below the fewest up to those that leave a quarter of the error, of order 4."""
     least = fewest(beam, mode, error, wall, in_space)
-    most = least + MOST_TRIED
-    with suppress(InputError):
-        most = min(most, max(least + 2, fewest(beam, mode, 0.25 * error, wall, in_space)))
+    most = min(int(4.0**0.25 * least) + 2, least + MOST_TRIED)
     return [*range(max(least - 1, len(beam.pieces), mode + 1, 2), most + 1)]
 
 

@@ -160,14 +160,14 @@ def with_armature(chain: RigidChain, inertias: Array, remark: str) -> RigidChain
 def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatures: bool = True) -> list[Candidate]:
     """Candidates in bending of chains at a step; where one does not run, also with armature.
 
-    Armature needs dashpots and hinges about one axis (`armature`). Raises InputError.
+    Armature needs dashpots at the joints alone and hinges about one axis (`armature`). Raises InputError.
     """
     scheme, step, found = scheme_of(steps.engine, steps.integrator), steps.step, list[Candidate]()
     for chain in (replace(each, steps=steps) for each in chains):
         every = simulated_chain(chain, step, scheme)
         betas = [0.0, max(FOURTH_ORDER, 0.25 - (MARGIN / (step * every.omega_max)) ** 2), 0.25]
         heavy = armatures and steps.engine in WEIGHTED and chain.damping
-        heavy = heavy and not (chain.in_space or chain.closed or chain.meant)
+        heavy = heavy and not (chain.in_space or chain.closed or chain.viscosity or chain.meant)
         for beta in betas if heavy and scheme in (IMPLICIT_DASHPOTS, EXPLICIT_DASHPOTS) else betas[:1]:
             made, run = chain, every
             if beta:

@@ -113,12 +113,8 @@ def notes(chain: RigidChain) -> str:
         text = ", ".join(f"{hertz:.9g} ({error:+.2e})" for hertz, error in modes)
         lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
     if chain.damping:
-        how = (
-            "dashpots in proportion to the springs, and drag"
-            if chain.viscosity
-            else "dashpots in proportion to the springs"
-        )
-        lines.append(f"{how}: damping ratio {chain.damping!r} in mode 1" + ", more beyond" * (not chain.viscosity))
+        more = "more beyond" if not chain.viscosity else "with drag by the viscosity"
+        lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, {more}")
     if chain.steps:
         lines.append(f"time step {chain.steps.step!r} s in {chain.steps.engine} {chain.steps.integrator}".rstrip())
     lines += chain.remarks
@@ -243,14 +239,8 @@ def data(chain: RigidChain) -> dict[str, object]:
         axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
         for axis in chain.axes
     }
-    own = {name: getattr(chain, name) for name in names}
-    return {
-        "supports": chain.beam.supports,
-        "count": chain.count,
-        **own,
-        "steps": chain.steps and chain.steps._asdict(),
-        "expected": expected,
-    }
+    own = {name: getattr(chain, name) for name in names} | {"steps": chain.steps and chain.steps._asdict()}
+    return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}
 
 
 _WRITERS: dict[str, Callable[[RigidChain], str]] = {
