@@ -15,6 +15,7 @@ from verify.engines.choice import default_steps
 from verify.engines.damping import asked, damped
 from verify.engines.describe import describe
 from verify.engines.description import Steps
+from verify.engines.judgement import judge_file
 from verify.errors import InputError
 from verify.problem.phrase import beam_table
 
@@ -91,6 +92,9 @@ def test_file_runs_in_mujoco_as_its_table_says(name, tmp_path):
     assert hertz == pytest.approx(promised["simulated"], rel=1e-5)
     assert ratio == pytest.approx(promised["simulated damping"], abs=1e-6)
     assert ratio == pytest.approx(zeta, abs=near)
+    judged = judge_file(tmp_path / "beam.xml", None, highest)
+    assert judged.data["passed"] == (name != "compensated")  # of which the file says nothing
+    assert rows(judged, "As it runs")[mode - 1]["simulated damping"] == pytest.approx(ratio, abs=1e-6)
     if mode == 1:
         assert hertz == pytest.approx(FIRST * sqrt(1 - zeta**2), rel=0.005)
     if name == "armature":  # a release of 0.3 rad at the wall does not diverge

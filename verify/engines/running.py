@@ -74,8 +74,10 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
 
 def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
     """The matrices of a line in the steps of a setting."""
-    mass, stiffness = rigid(line, line.springs, beam, "").matrices(line.turns)
+    chain = replace(rigid(line, line.springs, beam, ""), viscosity=setting.viscosity)
+    mass, stiffness = chain.matrices(line.turns)
     damping, armature = (np.diag(one[~np.isnan(line.springs)]) for one in (line.dashpots, line.armatures))
+    damping = damping + chain.drag(line.turns)
     file = Simulated(mass, damping, stiffness, setting.step, scheme_of(*setting[:2]))
     return Motion(line.axis, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
 
