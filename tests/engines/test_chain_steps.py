@@ -185,7 +185,7 @@ REFUSED = {
     "--damping lots": ("1% at 2",),
     "--damping '1% compensated'": ("step",),
     "--damping '1% at 9' --count 5": ("9",),
-    "--damping '0.5% compensated' --step 1ms --engine dart": ("0.000238 s",),
+    "--damping '0.5% compensated' --step 1ms --engine dart": ("238 µs",),
     "--damping '2% 5-50Hz' --step 0.1ms --engine dart": ("81.8", "within 82%"),
 }
 

@@ -100,7 +100,7 @@ def compensated(scheme: Scheme, zeta: float, omega: float, step: float) -> float
     ratio = -(m + k * x**2) / (2.0 * x * c)
     if ratio < 0.0:
         text = f"the integrator alone damps more than {100.0 * zeta:.3g} % at this step"
-        raise InputError(f"damping: {text}, give a step below {2.0 * zeta / omega:.3g} s")
+        raise InputError(f"damping: {text}, give a step below {with_unit(2.0 * zeta / omega, 's')}")
     return ratio
 
 
