@@ -41,6 +41,12 @@ def with_unit(value: float, symbol: str = "m", form: str = ".3g") -> str:
     return f"{unit.factor * rounded:{'+' if form.startswith('+') else ''}g} {unit.name}"
 
 
+def floored(value: float, digits: int) -> float:
+    """The number of so many digits that is at most a positive value."""
+    unit = 10.0 ** (floor(log10(value)) + 1 - digits)
+    return float(f"{floor(value / unit) * unit:.{digits}g}")
+
+
 def with_error(value: float, error: float, sign: str = "") -> str:
     """'9.8 ± 0.2': the error to one digit, the value to the same decimal place; `sign` is '+' for both signs."""
     error = float(f"{error:.1g}")

@@ -68,8 +68,6 @@ def mujoco_hz(path, stiffnesses=None):
 
 def as_mjcf(chain, path):
     write(chain, path / "beam.xml")
-    step = float(ElementTree.parse(path / "beam.xml").find("option").get("timestep"))
-    assert 0.9 < 2 * np.pi * max(chain.frequencies_hz(axis)[-1] for axis in chain.axes) * step < 1.1
     return mujoco_hz(path / "beam.xml")
 
 

@@ -10,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from verify import Beam, SegmentModel
 from verify.engines import integrators as table
 from verify.engines.choice import armature, band, choose, compensated, largest_mode, largest_step, rayleigh, trade
+from verify.engines.description import Steps
 from verify.engines.integrators import INTEGRATORS, generalised_alpha, hht, newmark, scheme_of
 from verify.engines.steps import Simulated
 from verify.errors import InputError
@@ -230,15 +231,15 @@ def test_drag_and_dashpots_by_closed_forms():
 
 
 def test_links_for_a_step_by_the_trade():
-    rows = trade(STRIP, (4, 5, 6, 8, 12), 1e-3, scheme_of("mujoco"), damping=0.01)
+    rows = trade([strip(n, 0.01) for n in (4, 5, 6, 8, 12)], Steps(1e-3, "MuJoCo"))
     assert choose(rows, 2, 0.01).links == 6
     assert choose(rows, 3, 0.01) is None
     assert largest_mode(rows, 0.01) == 2
     assert [row.links for row in rows if row.beta] == [8, 12]
     assert all(row.limit > 1e-3 for row in rows if row.beta)
-    plain = trade(STRIP, (8,), 1e-4, scheme_of("mujoco"))[0]
+    plain = trade([strip(8)], Steps(1e-4, "MuJoCo"))[0]
     assert 100 * plain.space == pytest.approx([0.0014, -0.052, -0.81], abs=0.006)
-    damped = trade(STRIP, (12,), 1e-3, scheme_of("mujoco", "discrete"))[0]
+    damped = trade([strip(12)], Steps(1e-3, "MuJoCo", "discrete"))[0]
     assert 100 * damped.numerical == pytest.approx([2.15, 13.2, 32.9], abs=0.06)
     for engine, setting, figure in (("exudyn", "TrapezoidalIndex2", 0.463e-3), ("dart", "", 0.026e-3)):
         file = strip(12).simulated(1e-3, engine, setting)

@@ -124,6 +124,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     **{f"control.{n}": ("driven", {**FEM, "target": 6e-7, "speed": 4e-7, "duration": 0.9}) for n in (
         "overshoot", "settling_time")},
     "study.value": ("decay", {"study": "identify", "row": "mu", "column": "sd"}),
+    "engine.step_limit": ("clamped", {"count": 9}),
+    **{f"engine.{name}": ("clamped", {"count": 9, "mode": 2, "step": 2e-4}) for name in ("frequency", "damping")},
     "chain.contact_line_error": ("clamped", {"segments": 9, "mode": 2, "x": 0.31}),
     "chain.transient_deflection": ("undamped", {"segments": 5, "time": 7e-4, "x": 0.31}),
     "chain.axial_departure": ("undamped", {"segments": 5, "force": 30.0, "time": 7e-4}),

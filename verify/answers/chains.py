@@ -1,17 +1,25 @@
 """The joints of a beam as a chain of rigid bodies."""
 
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
+from math import inf, isfinite
 from pathlib import Path
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
-from verify.analysis.verdict import Margin
+from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
+from verify.engines.choice import Candidate, choose, default_steps, largest_mode, trade
+from verify.engines.damping import Asked, asked, damped
 from verify.engines.describe import describe
-from verify.engines.description import MOST_LINKS, RigidChain
+from verify.engines.description import MOST_LINKS, RigidChain, Steps
+from verify.engines.integrators import integrator_of
+from verify.engines.running import chain_runs
 from verify.engines.writers import data, table, write
 from verify.errors import InputError
+from verify.formatting import with_unit
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 from verify.settings import DEFAULT, wall_label
@@ -19,6 +27,10 @@ from verify.validation import check_integer, check_number
 
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
+AUTOMATIC = {"MuJoCo": ("implicitfast", "discrete")}
+"""Integrators that are tried in turn where none is named; of other engines the first in `INTEGRATORS`."""
+MOST_TRIED = 30
+"""Links beyond the fewest, one more at a time, among which those for a step are sought."""
 
 
 @one_blas_thread()
@@ -30,24 +42,124 @@ def engine_chain(
     error: float = 0.01,
     wall: str = DEFAULT.wall,
     in_space: bool = False,
-    damping: float = 0.0,
+    damping: float | str = 0.0,
+    step: float | None = None,
+    engine: str = "",
     path: str | Path | None = None,
 ) -> Result:
     """Joints and links of a beam as a chain of rigid bodies, with the frequency errors of exactly this chain.
 
-    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` at all modes up to `mode`.
-    `wall`: rule of the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode
-    1. `path`: file to write, .xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N
-    m/rad, N m s), links (m, kg, kg m^2) and frequencies (Hz). Raises InputError.
+    `beam`: as of `choose`. `count`: number of links, None for the fewest within `error` up to `mode`. `wall`: rule of
+    the joints at a clamped end. `in_space`: both bending planes and torsion. `damping`: ratio of mode 1, or a request
+    in words (`engines.damping.asked`). `step`, s, of `engine` "NAME" or "NAME:INTEGRATOR": chooses links, integrator,
+    armature by which the chain runs, with all errors up to `mode`, of the damping ratio too, within `error`. Without
+    it, the file of an engine has a step of `engines.choice.default_steps`. `path`: file to write, .xml (MJCF), .sdf,
+    .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links (m, kg, kg m^2) and
+    frequencies (Hz). Raises InputError, also where no chain runs at the step.
     """
     check_integer("mode", mode, 1, 100)
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
-    beam = named(beam).beam
-    if count is None:
-        count = fewest(beam, mode, error, wall, in_space)
-    chain = describe(beam, count, wall=wall, in_space=in_space, damping=damping)
-    result = _chain_result(chain, mode)
+    beam, request, end = named(beam).beam, asked(damping), str(path or ".xml").lower()
+    own = end.endswith((".xml", ".mjcf"))
+    engine = engine or "MuJoCo" * (own and path is not None)
+    make = partial(describe, beam, wall=wall, in_space=in_space)
+    names, highest = end.endswith((".json", ".csv")), 1 if request.in_hz else int(max(request.at))
+    if step is None:
+        count = count or fewest(beam, max(mode, highest), error, wall, in_space)
+        steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
+        chain = damped(make(count), request, steps, drag=own)
+        result = _chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
+    else:
+        check_number("step", step, "s", above=0)
+        if not engine:
+            raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
+        plain = [make(n) for n in ([count] if count else _counts(beam, max(mode, highest), error, wall, in_space))]
+        chosen, rows = _for_step(plain, request, _steps(engine, step, True), mode, error, own, own or names)
+        result, chain = _chain_result(chosen.chain, mode, error), chosen.chain
+        links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
+        why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
+        table = _trade_table(rows, chosen, mode, error)
+        result = replace(result, tables=[*result.tables, table], summary=f"{result.summary[:-1]}, {why}")
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
+
+
+def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> list[int]:
+    """Numbers of links from one below the fewest up to those that leave a quarter of the error, of order 4."""
+    least = fewest(beam, mode, error, wall, in_space)
+    most = min(int(4.0**0.25 * least) + 2, least + MOST_TRIED)
+    return [*range(max(least - 1, len(beam.pieces), mode + 1, 2), most + 1)]
+
+
+def _steps(engine: str, step: float, damped: bool) -> list[Steps]:
+    """The integrators of `engine` 'NAME' or 'NAME:INTEGRATOR' that are tried in turn. Raises InputError."""
+    name, _, setting = engine.partition(":")
+    row = integrator_of(name, setting)
+    settings = (row.setting,) if setting else AUTOMATIC.get(row.engine, (row.setting,))
+    if not setting and row.engine == "MuJoCo" and step == inf and not damped:
+        settings = ("RK4",)  # the largest limit without dashpots
+    return [Steps(step, row.engine, one) for one in settings]
+
+
+def _for_step(
+    plain: list[RigidChain],
+    request: Asked,
+    integrators: list[Steps],
+    mode: int,
+    error: float,
+    drag: bool,
+    armatures: bool,
+) -> tuple[Candidate, list[Candidate]]:
+    """(the candidate that is chosen, all of them) of chains without dashpots. Raises InputError with what would run."""
+    rows, remedies, largest = list[Candidate](), list[str](), (0.0, "")
+    for steps in integrators:
+        found = trade([damped(one, request, steps, drag=drag) for one in plain], steps, modes=mode, armatures=armatures)
+        rows += found
+        if chosen := choose(found, mode, error):
+            return chosen, rows
+        fine = [one.chain for one in found if len(one.space) >= mode and abs(one.space[mode - 1]) <= 0.5 * error]
+        for one in fine[:1]:
+            with suppress(InputError):
+                begun = default_steps(one, steps, mode, error).steps
+                largest = max(largest, (begun.step if begun else 0.0, steps.integrator))
+        if len(request.ratios) == 1 and request.ratios[0] and not (request.in_hz or request.compensated):
+            with suppress(InputError):
+                other = [damped(one, request._replace(compensated=True), steps) for one in plain]
+                good = choose(trade(other, steps, modes=mode), mode, error)
+                remedies += ["compensated dashpots, damping '... compensated'"] * bool(good)
+    step, number, first, last = integrators[0].step, largest_mode(rows, error), rows[0], rows[-1]
+    span = " to ".join(str(n) for n in dict.fromkeys((plain[0].count, plain[-1].count)))
+    named = ", ".join(f"{one.engine} {one.integrator}" for one in integrators)
+    text = f"step = {with_unit(step, 's', '.6g')}: in {named} no chain of {span} links runs within {per_cent(error)} "
+    text += f"up to mode {mode}"
+    if not first.stable:
+        text += f", {first.links} links {'diverge' if step > first.limit else 'nearly diverge'} "
+        text += f"(omega_max h = {first.omega_max * step:.3g}, limit {first.omega_max * first.limit:.3g})"
+    if last.stable and len(last.space) >= mode:
+        errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
+        text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
+    remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
+    remedies = [f"mode {number}"] * bool(number) + remedies + ["hinges in one plane"] * first.chain.in_space
+    raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
+
+
+def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
+    """Numbers of links next to the chosen one, with what space and time cost at a mode."""
+    columns = [Column("links"), Column("integrator"), Column("armature, h² k", format=".3g")]
+    columns += [Column("step limit", "s", ".3g", prefix=True)]
+    columns += [Column(name, format="+.2g", percent=True) for name in ("space", "time", "error", "damping added")]
+    columns += [Column("it")]
+    each = list[tuple[object, ...]]()
+    for one in (row for row in rows if abs(row.links - chosen.links) <= 2 and len(row.space) >= mode):
+        assert one.chain.steps
+        fate = "diverges" if one.chain.steps.step > one.limit else "nearly diverges"
+        fate = f"is beyond {per_cent(error)}" if one.stable else fate
+        fate = "is chosen" if one is chosen else "runs" if one.worst[mode - 1] <= error else fate
+        figures = (float(values[mode - 1]) for values in (one.space, one.time, one.error, one.numerical))
+        limit = one.limit if isfinite(one.limit) else None
+        shown = [value if isfinite(value) and one.stable else None for value in figures]
+        each.append((one.links, one.chain.steps.integrator, one.beta or None, limit, *shown, fate))
+    note = f"Errors of frequency and damping ratio at mode {mode} in bending; small vibration about rest."
+    return Table("Links for the step", columns, each, [note])
 
 
 def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
@@ -65,7 +177,7 @@ def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_spa
     raise InputError(f"error = {error!r}: {text}")
 
 
-def _chain_result(chain: RigidChain, mode: int) -> Result:
+def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
     """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
     held, n = "clamped" in chain.beam.supports, chain.count
     walls = [name for name in COMPARED if held and name != chain.wall]
@@ -90,8 +202,14 @@ def _chain_result(chain: RigidChain, mode: int) -> Result:
             )
         ]
     rule = f", {wall_label(chain.wall)}" if held else ""
+    rule += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}" if chain.steps else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and chain.beam.attached:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
     tables = [table(chain), Table("Frequencies", columns, rows)]
+    if chain.steps:
+        ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
+        tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
+    else:
+        warnings += chain.remarks
     return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import click
 
@@ -18,13 +18,15 @@ from verify.commands.shared import (
     show,
 )
 from verify.convert import typed
+from verify.engines.damping import EXAMPLES
 from verify.engines.judgement import judge_file
 from verify.errors import InputError, printable
 from verify.report.result import Table
 from verify.scene.file import load_beam
 from verify.settings import DEFAULT, WALLS
-from verify.validation import Relative
+from verify.validation import unit
 
+Seconds = Annotated[float, unit("s")]
 FIRST = 4
 """Joints that the terminal always shows."""
 RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
@@ -40,7 +42,11 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
     "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
 )
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
-@click.option("--damping", default="0", metavar="Z", help="Damping ratio of mode 1 by dashpots at the joints: 1%.")
+@click.option("--damping", default="0", metavar="Z", help=f"Damping ratio by dashpots, of mode 1, or {EXAMPLES[4:]}.")
+@click.option(
+    "--engine", metavar="NAME[:INTEGRATOR]", default="", help="It runs in: MuJoCo, Exudyn:RK44. Default: --to's."
+)
+@click.option("--step", "time_step", metavar="TIME", help="Choose links, integrator, armature by which it runs: 2ms.")
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options
 def chain(
@@ -52,15 +58,18 @@ def chain(
     wall: str,
     in_space: bool,
     damping: str,
+    engine: str,
+    time_step: str | None,
     path: str | None,
     **formats: Any,
 ) -> None:
     """Joints and links of SCENE as rigid bodies for MuJoCo, Gazebo, Drake, Exudyn, Pinocchio.
 
     Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
-    Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`
+    Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`, or with
+    `--step 1ms --engine MuJoCo --damping "1% at 2" --mode 1` for a time step and a damping ratio.
     """
-    ratio, limit, brief = typed(damping, Relative, "damping"), relative_error(error), not any(formats.values())
+    limit, brief = relative_error(error), not any(formats.values())
     result = engine_chain(
         load_beam(scene, overrides),
         count,
@@ -68,7 +77,9 @@ def chain(
         error=limit,
         wall=wall,
         in_space=in_space,
-        damping=ratio,
+        damping=damping,
+        step=None if time_step is None else typed(time_step, Seconds, "step"),
+        engine=engine,
         path=path,
     )
     if brief:

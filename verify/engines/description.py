@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -44,11 +44,20 @@ DENSE = 150
 
 
 class Hinge(msgspec.Struct, frozen=True):
-    """A rotation about one axis with its spring, N m/rad (0 is free), and its dashpot, N m s."""
+    """A rotation about one axis with its spring, N m/rad (0 is free), its dashpot, N m s, and its armature, kg m^2."""
 
     axis: Axis
     stiffness: float
     damping: float = 0.0
+    armature: float = 0.0
+
+
+class Steps(NamedTuple):
+    """The time step, s, for which a chain is made, and the integrator, by the names of `integrators`."""
+
+    step: float
+    engine: str
+    integrator: str = ""
 
 
 class Joint(msgspec.Struct, frozen=True):
@@ -88,7 +97,8 @@ class RigidChain:
 
     `beam` runs from joint 0 on; `mirrored`: joint 0 is at the right end of the scene's beam. `wall`: rule of the joints
     at a clamped end. `damping`: ratio of the first mode about every axis; that of others is in proportion to frequency.
-    `theory`: of the exact beam.
+    `theory`: of the exact beam. `viscosity`, N s/m^2, of MuJoCo's medium: drag. `steps`: for which it is made, with
+    what holds for them in `remarks`; `meant`: without their armature and compensation.
     """
 
     beam: Beam
@@ -100,6 +110,10 @@ class RigidChain:
     in_space: bool = False
     mirrored: bool = False
     theory: Theory = "euler-bernoulli"
+    viscosity: float = 0.0
+    steps: Steps | None = None
+    remarks: tuple[str, ...] = ()
+    meant: "RigidChain | None" = None
     __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
@@ -185,10 +199,19 @@ class RigidChain:
         hertz = self.frequencies_hz(axis, n_modes)
         return np.asarray(hertz / self.exact_hz(axis, len(hertz)) - 1.0)
 
+    def drag(self, axis: Axis = "bending") -> Array:
+        """Dashpots of the `viscosity` over the `unknowns`, by the inertia box of every link as in MuJoCo, (n, n)."""
+        x, mass, inertia = zip(*((k.start + k.centre, k.mass, k.inertia) for k in self.links), strict=True)
+        sides = np.sqrt(np.maximum(6.0 * (np.array(inertia) @ (1.0 - 2.0 * np.eye(3))) / np.array(mass)[:, None], 0.0))
+        across, turned = self.rows(axis, range(self.count), x)
+        size = pi * self.viscosity * sides.mean(axis=1)
+        moved = (across.T * 3.0 * size) @ across * (axis != "torsion")
+        return np.asarray(moved + (turned.T * size * sides.mean(axis=1) ** 2) @ turned)
+
     def simulated(self, step: float, engine: str, setting: str = "", axis: Axis | None = None) -> "Simulated":
         """Damped modes, multipliers and stability limit in an engine's steps, s, by a setting of `integrators`.
 
-        About all axes or one. Raises InputError for an unknown engine or setting.
+        About all axes or one, with the armature of its hinges. Raises InputError for an unknown engine or setting.
         """
         from verify.engines.integrators import scheme_of
         from verify.engines.steps import simulated_chain
@@ -283,7 +306,8 @@ def rigid_chain(
     ground = tuple(_ground_springs(beam, chain, {spring.position for spring in behind}))
     theory: Theory = "rayleigh" if in_space else "euler-bernoulli"
     rigid = RigidChain(beam, wall, tuple(map(Joint, nodes, hinges)), links, ground, 0.0, in_space, mirrored, theory)
-    return _damped(rigid, damping) if damping else rigid
+    times = {axis: damping / (pi * float(rigid.frequencies_hz(axis, 1)[0])) for axis in rigid.axes if damping}
+    return with_dashpots(rigid, times, damping) if damping else rigid
 
 
 def _ground_springs(beam: Beam, chain: Any, behind: set[float]) -> Iterator[Spring]:
@@ -311,9 +335,8 @@ def _torsion_springs(lengths: Array, twist: Array, spin: Array, bodies: list[Any
     return np.asarray(1.0 / (np.append(before, 0.0) + np.append(0.0, after)))
 
 
-def _damped(chain: RigidChain, ratio: float) -> RigidChain:
-    """The chain with dashpots in proportion to its springs, by which the first mode about each axis has the ratio."""
-    times = {axis: ratio / (pi * float(chain.frequencies_hz(axis, 1)[0])) for axis in chain.axes}
+def with_dashpots(chain: RigidChain, times: dict[Axis, float], ratio: float) -> RigidChain:
+    """The chain with dashpots over springs of `times`, s, by which the first mode about every axis has `ratio`."""
 
     def damped(spring: Any, axis: Axis) -> Any:
         return msgspec.structs.replace(spring, damping=times[axis] * spring.stiffness)

@@ -57,12 +57,16 @@ class Solid(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """Engine, integrator and time step, s, of a simulation; '' and nan: unknown. `note`: what is left out."""
+    """Engine, integrator and time step, s, of a simulation; '' and nan: unknown. `note`: what is left out.
+
+    `viscosity`: N s/m^2 of the medium, as of `RigidChain`.
+    """
 
     engine: str = ""
     integrator: str = ""
     step: float = np.nan
     note: str = ""
+    viscosity: float = 0.0
 
 
 def read(path: Path) -> tuple[str, list[Solid], Array, Setting]:
@@ -185,8 +189,12 @@ def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array, Se
     rule = mujoco.mjtIntegrator(model.opt.integrator).name.removeprefix("mjINT_")
     if rule == "EULER" and model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_EULERDAMP:
         rule = "Euler without eulerdamp"
-    note = "the drag of its medium is left out" if model.opt.density or model.opt.viscosity else ""
-    return solids, np.array(model.opt.gravity), Setting("MuJoCo", rule, float(model.opt.timestep), note)
+    # a body is dragged as the box of its inertia, here a cube; in Euler explicitly, unlike the dashpots
+    alike = np.ptp(model.body_inertia, axis=1).max() < 1e-9 * model.body_inertia.max() and not model.opt.density
+    viscosity = float(model.opt.viscosity) if alike and not rule.lower().startswith("euler") else 0.0
+    lost = model.opt.density or model.opt.viscosity > viscosity
+    note = "the drag of its medium is left out" if lost else ""
+    return solids, np.array(model.opt.gravity), Setting("MuJoCo", rule, float(model.opt.timestep), note, viscosity)
 
 
 def _value(one: ElementTree.Element | None, path: str) -> str:

@@ -6,7 +6,7 @@ Small vibration about rest, with the dashpots of the file. Armature counts to th
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from math import floor, hypot, inf, isfinite, log10
+from math import hypot, inf, isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -14,13 +14,14 @@ import numpy as np
 
 from verify.analysis.verdict import Margin, per_cent, three_digits, void
 from verify.arrays import Array
+from verify.engines.description import RigidChain, Steps
 from verify.engines.integrators import integrator_of, scheme_of
 from verify.engines.line import Line
 from verify.engines.reading import Setting, Solid
 from verify.engines.rules import Judged, rigid
-from verify.engines.steps import Simulated
+from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError
-from verify.formatting import with_unit
+from verify.formatting import floored, with_unit
 from verify.problem.beam import Beam
 from verify.validation import check_number
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from verify.report.result import Result, Table
 
 ADDED = 0.1
-"""Damping by the integrator, over that of the file, from which it is named."""
+"""Damping by the integrator, over that of the file and over the permitted error, from which it is named."""
 SAG = 0.6
 """Change of the first frequency of a cantilever over the square of its sag by linear theory over its length.
 
@@ -41,25 +42,20 @@ BUCKLING = 7.837
 class Motion(NamedTuple):
     """A chain about one axis: as in the file and as it runs, with armature; `exact`: undamped Hz of its beam, (m,)."""
 
-    line: Line
+    axis: str
     exact: Array
     file: Simulated
     run: Simulated
 
-    @property
-    def first(self) -> int:
-        """Number of rigid motions, before the elastic modes."""
-        return int((self.file.modal[0] == 0.0).sum())
-
     def rows(self) -> list[tuple[Any, ...]]:
         """Axis and mode; f as meant, in the file and simulated, change; zeta of the file and simulated, added."""
-        part, found = slice(self.first, self.first + len(self.exact)), list[tuple[Any, ...]]()
+        part, found = slice(self.file.rigid, self.file.rigid + len(self.exact)), list[tuple[Any, ...]]()
         file, run = self.file.modes, self.run.modes
         figures = (one[part].tolist() for one in (file.file_hz, file.file_zeta, run.hz, run.zeta))
         for mode, (exact, hz, zeta, now, after) in enumerate(zip(self.exact.tolist(), *figures, strict=False), 1):
             meant, change = exact * max(1.0 - zeta**2, 0.0) ** 0.5, now / hz - 1.0 if hz else 0.0
             ratios = (one if abs(one) > 1e-12 else 0.0 for one in (zeta, after, after - zeta))  # rounding
-            found.append((self.line.axis, mode, meant, hz, now, change, *ratios))
+            found.append((self.axis, mode, meant, hz, now, change, *ratios))
         return found
 
 
@@ -78,10 +74,12 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
 
 def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
     """The matrices of a line in the steps of a setting."""
-    mass, stiffness = rigid(line, line.springs, beam, "").matrices(line.turns)
+    chain = replace(rigid(line, line.springs, beam, ""), viscosity=setting.viscosity)
+    mass, stiffness = chain.matrices(line.turns)
     damping, armature = (np.diag(one[~np.isnan(line.springs)]) for one in (line.dashpots, line.armatures))
+    damping = damping + chain.drag(line.turns)
     file = Simulated(mass, damping, stiffness, setting.step, scheme_of(*setting[:2]))
-    return Motion(line, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
+    return Motion(line.axis, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
 
 
 def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, setting: Setting, within: float) -> "Result":
@@ -98,7 +96,7 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
     motions = [_motion(line, hertz, beam, setting) for line, hertz in zip(lines, exact, strict=True)]
     rows, warnings = [row for one in motions for row in one.rows()], [setting.note] if setting.note else []
     worst = min(motions, key=lambda one: (one.run.limit, -one.run.omega_max))
-    run, limit, at = worst.run, float(worst.run.limit), f" in {worst.line.axis}" * (len(motions) > 1)
+    run, limit, at = worst.run, float(worst.run.limit), f" in {worst.axis}" * (len(motions) > 1)
     name, remark = " ".join(setting[:2]), integrator_of(*setting[:2]).remark
     warnings += [f"{name}: {remark}"] if remark and (setting.engine != "MuJoCo" or not run.stable) else []
     if armature := any(one.file is not one.run for one in motions):
@@ -123,9 +121,25 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
     words = f"{name}, {with_unit(setting.step, 's')}: {', '.join([*bounds, 'small vibration about rest'])}."
     data = {"engine": name, "step": setting.step, "limit": limit, "stable": run.stable, "substeps": run.substeps}
     good = min(0.5 * limit, *steps) if margin.level != "trusted" else inf
-    data |= {"omega_max": run.omega_max, "axis": worst.line.axis, "accurate_steps": steps}
-    data["within"] = _floor(good, 2) if 0.0 < good < inf else 0.0
+    data |= {"omega_max": run.omega_max, "axis": worst.axis, "accurate_steps": steps}
+    data["within"] = floored(good, 2) if 0.0 < good < inf else 0.0
     return Result(words, [_table(rows)], warnings=warnings, margins=[margin], data=data)
+
+
+def chain_runs(chain: RigidChain, steps: Steps, modes: int, within: float) -> "tuple[Table, Margin, list[str]]":
+    """(modes as meant and simulated, margin of the one that differs most, warnings) of a chain for its steps."""
+    motions, scheme = list[Motion](), scheme_of(*steps[1:])
+    for axis in chain.axes:
+        file, run = (simulated_chain(one, steps.step, scheme, axis) for one in (chain.meant or chain, chain))
+        motions.append(Motion(axis, chain.exact_hz(axis, modes), file, run))
+    rows, step = [row for one in motions for row in one.rows()], with_unit(steps.step, "s")
+    margin, warnings = _error(rows, len(motions) > 1, "the integrator", within)
+    words = {"name": f"time step of {step}", "remedy": "give a shorter step"}
+    text = "the far end is held by an equality, which acts after the dashpots: with them to about 1e-3 of f"
+    notes = [*chain.remarks, *[text] * (steps.engine == "MuJoCo" and chain.closed and chain.damping > 0.0)]
+    remark = integrator_of(*steps[1:]).remark
+    notes += [f"{' '.join(steps[1:])}: {remark}"] if remark and steps.engine != "MuJoCo" else []
+    return _table(rows, notes), msgspec.structs.replace(margin, **words), warnings
 
 
 def _accurate(motions: Sequence[Motion], within: float) -> list[float]:
@@ -136,7 +150,7 @@ def _accurate(motions: Sequence[Motion], within: float) -> list[float]:
     found = [inf, inf]
     for one in (each for each in motions if each.file is each.run):
         with suppress(InputError):  # an overdamped mode has no frequency
-            mode = one.first + len(one.exact)
+            mode = one.file.rigid + len(one.exact)
             steps = [float(one.file.step_for(mode, within, damping=damping)) for damping in (False, True)]
             found = [min(pair) for pair in zip(found, steps, strict=True)]
     return found
@@ -154,12 +168,12 @@ def _error(rows: list[tuple[Any, ...]], several: bool, cause: str, within: float
         text += f"{share}, in place of {three_digits(hz)} Hz with {per_cent(zeta)}"
     margin = Margin(name="", where=f"at mode {mode} in {axis}", failure=text, size=size, fine=within, limit=within)
     axis, mode, *_, zeta, after, added = max(rows, key=lambda row: row[8])
-    if size > within or added <= ADDED * zeta + 1e-6:
+    if size > within or added <= ADDED * max(zeta, within):
         return margin, []
     return margin, [f"damping {per_cent(after)} at mode {mode} in {axis} in place of {per_cent(zeta)}, by {cause}"]
 
 
-def _table(rows: list[tuple[Any, ...]]) -> "Table":
+def _table(rows: list[tuple[Any, ...]], notes: Sequence[str] = ()) -> "Table":
     """Modes as meant, in the file, and as they run."""
     from verify.report.result import Column, Table
 
@@ -169,7 +183,7 @@ def _table(rows: list[tuple[Any, ...]]) -> "Table":
     columns = [Column("axis"), Column("mode"), *hz, signed[0], *ratios, signed[1]]
     cells = [[None if isinstance(x, float) and not isfinite(x) else x for x in row] for row in rows]
     note = "Damped frequencies, meant those of the exact beam with the damping of the file; added by the integrator."
-    return Table("As it runs", columns, cells, [note])
+    return Table("As it runs", columns, cells, [note, *notes])
 
 
 def under_gravity(judged: Sequence[Judged], solids: Sequence[Solid], gravity: Array, within: float) -> list[Margin]:
@@ -209,10 +223,4 @@ def in_space_only(margin: Margin) -> Margin:
 
 def _time(step: float) -> str:
     """A step that is at most this one, in three digits."""
-    return with_unit(_floor(step, 3), "s")
-
-
-def _floor(value: float, digits: int) -> float:
-    """The number of so many digits below."""
-    unit = 10.0 ** (floor(log10(value)) + 1 - digits)
-    return float(f"{floor(value / unit) * unit:.{digits}g}")
+    return with_unit(floored(step, 3), "s")

@@ -176,6 +176,11 @@ class Simulated:
         return Modes(_hertz(file), _ratio(file), hertz, _ratio(s))
 
     @property
+    def rigid(self) -> int:
+        """Number of rigid motions, the first modes."""
+        return int((self.modal[0] == 0.0).sum())
+
+    @property
     def omega_max(self) -> float:
         """Highest undamped frequency, 1/s."""
         return float(self.modal[0][-1])
@@ -292,17 +297,20 @@ def _reach(scheme: Scheme, s: ComplexArray) -> tuple[float, int]:
 
 
 def simulated_chain(chain: RigidChain, step: float, scheme: Scheme, axis: Axis | None = None) -> Simulated:
-    """A chain in the steps of a scheme, about all axes of its hinges or one."""
+    """A chain in the steps of a scheme, with armature and drag, about all axes of its hinges or one."""
     from scipy.linalg import block_diag
 
     axes, damping, labels = chain.axes if axis is None else (axis,), list[Array](), list[str]()
-    for about in axes:
-        hinges = {j: hinge.damping for j, joint in enumerate(chain.joints) if (hinge := joint.hinge(about))}
+    mass, stiffness = (list(each) for each in zip(*map(chain.matrices, axes), strict=True))
+    for i, about in enumerate(axes):
         unknowns = chain.unknowns(about)
-        damping.append(np.diag([0.0 if name.startswith("slide") else hinges[j] for name, j, _ in unknowns]))
+        hinges = [None if name.startswith("slide") else chain.joints[j].hinge(about) for name, j, _ in unknowns]
+        damping.append(np.diag([hinge.damping if hinge else 0.0 for hinge in hinges]))
+        mass[i] = mass[i] + np.diag([hinge.armature if hinge else 0.0 for hinge in hinges])
         for _, weights, _, dashpot in chain.grounded(about):
             damping[-1] += dashpot * np.outer(weights, weights)
+        if chain.viscosity:
+            damping[-1] += chain.drag(about)
         labels += [about] * len(unknowns)
-    mass, stiffness = (block_diag(*each) for each in zip(*map(chain.matrices, axes), strict=True))
     constraints = block_diag(*map(chain.constraints, axes))
-    return Simulated(mass, block_diag(*damping), stiffness, step, scheme, labels, constraints)
+    return Simulated(block_diag(*mass), block_diag(*damping), block_diag(*stiffness), step, scheme, labels, constraints)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
+from verify.engines.choice import default_steps
 from verify.engines.description import Axis, RigidChain
 from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
@@ -24,7 +25,9 @@ MASSLESS = 1e-11
 LEAST = 2e-15, 2e-14
 """Its least mass, kg, and inertia, kg m^2, twice those that MuJoCo takes."""
 MODES = 3
-_MJCF_JOINT = '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"/>'
+_MJCF_JOINT = (
+    '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"{more}/>'
+)
 _MJCF_BODY = (
     '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
     '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
@@ -67,17 +70,20 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
     beam, parent, offset = chain.beam, "world", chain.joints[0].position
     steps = np.cumsum([section.length for section in beam.section[:-1]])
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
-        moves = [(f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping) for h in joint.hinges]
+        moves = [
+            (f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping, h.armature)
+            for h in joint.hinges
+        ]
         if j == 0 and not chain.supported[0]:
             slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
-            moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0) for axis, direction in slides] + moves
+            moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0, 0.0) for axis, direction in slides] + moves
         section = beam.section[int(np.searchsorted(steps, link.start + link.centre))] if beam.section else None
         fields = merged(section, beam) if section else set_fields(beam)
         # a hundredth of the length where unknown
         across = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
         size, half = (" ".join(repr(scale * one) for one in (link.length, *across)) for scale in (1.0, 0.5))
         small = max(MASSLESS, LEAST[1] / min(link.inertia))
-        for name, kind, direction, stiffness, damping in moves:
+        for name, kind, direction, stiffness, damping, armature in moves:
             last = name == moves[-1][0]
             body, share = (
                 (f"link{j}", 1.0 - small * in_parts * (len(moves) - 1)) if last else (f"link{j}_{name}", small)
@@ -85,7 +91,7 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
             mass = link.mass if last else max(MASSLESS * link.mass, LEAST[0])
             yield {
                 **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
-                **{"offset": offset, "stiffness": stiffness, "damping": damping, "last": last},
+                **{"offset": offset, "stiffness": stiffness, "damping": damping, "armature": armature, "last": last},
                 **{"mass": mass, "centre": link.centre * last, "length": link.length},
                 **{"inertia": tuple(share * one for one in link.inertia)},
                 **{"middle": 0.5 * link.length, "size": size, "half": half},
@@ -107,25 +113,38 @@ def notes(chain: RigidChain) -> str:
         text = ", ".join(f"{hertz:.9g} ({error:+.2e})" for hertz, error in modes)
         lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
     if chain.damping:
-        lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, more beyond")
+        more = "more beyond" if not chain.viscosity else "with drag by the viscosity"
+        lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, {more}")
+    if chain.steps:
+        lines.append(f"time step {chain.steps.step!r} s in {chain.steps.engine} {chain.steps.integrator}".rstrip())
+    lines += chain.remarks
     if chain.closed:
         lines.append("supports of the far end and springs to the ground act along z (and y): for small motion")
     return "\n".join(lines)
 
 
 def mjcf(chain: RigidChain, step: float | None = None) -> str:
-    """The chain for MuJoCo; `step`, s, is by default one radian of the highest frequency.
+    """The chain for MuJoCo; `step`, s, is by default that of the chain, else of `default_steps`.
 
     Springs to the ground, joint N and the supports of the far end are fixed tendons, linear in the angles; a support is
     an equality, as stiff as the engine allows. Raises InputError for too many links.
     """
     if chain.count > DEEPEST:
         raise InputError(f"count = {chain.count}: MuJoCo reads at most {DEEPEST} nested bodies, lower it")
-    step = step or float(f"{0.5 / np.pi / max(chain.frequencies_hz(axis)[-1] for axis in chain.axes):.1e}")
+    chain = chain if chain.steps or step else default_steps(chain)
+    step = step or (chain.steps.step if chain.steps else 0.0)
+    rule = "implicitfast" if chain.damping else "RK4"
+    if chain.steps and chain.steps.engine == "MuJoCo":
+        rule = chain.steps.integrator
+    rule, _, flag = rule.partition(" without ")
+    options = f' viscosity="{chain.viscosity!r}"' if chain.viscosity else ""
+    flags = f'<flag {flag}="disable"/>' if flag else ""
     bodies, begun = "", False
     for one in tree(chain):
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
-        bodies += _MJCF_JOINT.format(**one | {"kind": {"revolute": "hinge"}.get(one["kind"], "slide")})
+        more = f' armature="{one["armature"]!r}"' if one["armature"] else ""
+        kind = "hinge" if one["kind"] == "revolute" else "slide"
+        bodies += _MJCF_JOINT.format(**one | {"kind": kind, "more": more})
         bodies += _MJCF_BODY.format(**one) if one["last"] else ""
         begun = not one["last"]
 
@@ -134,7 +153,7 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
         coefs = "".join(f'<joint joint="{joint}" coef="{coef!r}"/>' for (joint, *_), coef in each if coef)
         return f'<fixed name="{name}"{values}>{coefs}</fixed>\n'
 
-    tendons, equalities, closed, rule = "", "", "", "implicitfast" if chain.damping else "RK4"
+    tendons, equalities, closed = "", "", ""
     for axis in chain.axes:
         for name, row, stiffness, damping in chain.grounded(axis):
             tendons += tendon(name, axis, row, f' stiffness="{stiffness!r}" damping="{damping!r}" springlength="0"')
@@ -147,7 +166,7 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     return (
         f"<mujoco>\n<!--\n{notes(chain)}\n-->\n"
         '<compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>\n'
-        f'<option timestep="{step!r}" integrator="{rule}" gravity="0 0 0"{closed}/>\n'
+        f'<option timestep="{step!r}" integrator="{rule}" gravity="0 0 0"{options}{closed}>{flags}</option>\n'
         f'<size memory="200M"/>\n<worldbody>\n{bodies}<site name="tip" pos="{chain.links[-1].length!r} 0 0"/>'
         f"{'</body>' * chain.count}\n</worldbody>\n<tendon>{tendons}</tendon>\n<equality>{equalities}</equality>\n"
         "</mujoco>\n"
@@ -192,18 +211,21 @@ def script(chain: RigidChain, engine: str) -> str:
 
 def table(chain: RigidChain) -> Table:
     """Joints 0..N with the link beyond each, SI; in a plane a link has one inertia."""
-    word, damped = (" {}" if chain.in_space else ""), bool(chain.damping)
+    word, heavy = " {}" if chain.in_space else "", any(h.armature for joint in chain.joints for h in joint.hinges)
+    damped, names = bool(chain.damping), ("stiffness", "damping", "armature")
+    fields = [name for name, shown in zip(names, (True, damped, heavy), strict=True) if shown]
     columns = [Column("joint"), Column("position", "m")]
     for axis in chain.axes:
         columns += [Column("stiffness" + word.format(axis), "N m/rad", ".6g")]
         columns += [Column("dashpot" + word.format(axis), "N m s", ".4g")] * damped
+        columns += [Column("armature" + word.format(axis), "kg m2", ".4g")] * heavy
     columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
     columns += [Column("inertia" + word.format(one), "kg m2") for one in ("xx", "yy", "zz")[: 3 if word else 1]]
     rows = list[list[Any]]()
     for j, joint in enumerate(chain.joints):
         rows.append([j, joint.position])
         for hinge in map(joint.hinge, chain.axes):
-            rows[j] += [hinge.stiffness, hinge.damping][: 1 + damped] if hinge else [None] * (1 + damped)
+            rows[j] += [getattr(hinge, field) if hinge else None for field in fields]
         link = chain.links[j] if j < chain.count else None
         rows[j] += [link.length, link.mass, link.centre, *link.inertia] if link else [None] * 6
         del rows[j][len(columns) :]
@@ -212,12 +234,12 @@ def table(chain: RigidChain) -> Table:
 
 def data(chain: RigidChain) -> dict[str, object]:
     """The chain as data, SI, with its expected frequencies."""
-    names = ("wall", "mirrored", "damping", "joints", "links", "springs")
+    names = ("wall", "mirrored", "damping", "viscosity", "joints", "links", "springs", "remarks")
     expected = {
         axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
         for axis in chain.axes
     }
-    own = {name: getattr(chain, name) for name in names}
+    own = {name: getattr(chain, name) for name in names} | {"steps": chain.steps and chain.steps._asdict()}
     return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}
 
 
