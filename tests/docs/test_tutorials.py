@@ -73,6 +73,7 @@ def ran(line, capsys, monkeypatch):
         runpy.run_path(words[0], run_name="__main__")
         return 0, capsys.readouterr().out
     if program == "pytest":
+        monkeypatch.delenv("PYTEST_ADDOPTS", raising=False)  # options of the run around this one
         done = subprocess.run([sys.executable, "-m", "pytest", *words], capture_output=True, text=True, check=False)
         return done.returncode, done.stdout
     capsys.readouterr()
