@@ -61,7 +61,9 @@ def test_two_signals_share_their_modes_and_uneven_samples_are_taken_as_they_are(
         record(times, [(*pole, size, 0.4) for pole, size in zip(shared, sizes, strict=True)], noise=2e-3, seed=seed)
         for seed, sizes in enumerate(((1.0, 0.02), (0.01, 0.5)))
     ]
-    found = ring_down(times, np.stack(signals, axis=1))
+    found = ring_down(times, np.stack([signals[0], np.full(700, 0.3), signals[1]], axis=1))
+    assert [mode.amplitude[1] for mode in found.modes] == [0.0, 0.0]  # a channel that does not move
+    assert [found.modes[0].amplitude[0], found.modes[1].amplitude[2]] == pytest.approx([1.0, 0.5], rel=0.02)
     assert found.hertz == pytest.approx([3.1, 17.0], rel=1e-3)
     assert [mode.zeta for mode in found.modes] == pytest.approx([0.02, 0.015], rel=0.03)
 

@@ -21,8 +21,8 @@ from verify.problem.base_motion import Base
 from verify.problem.beam import Beam
 
 BEAM = Beam(length=10.0, bending_stiffness=1.4e4, mass_per_length=1.2, supports=("clamped", "free"))
-RIGID = "two models of the suite, extrapolated in number and step: links and elements agree to 2e-8"
-AXIAL = "nonlinear elements, extrapolated in number and step"
+RIGID = "links of the suite, extrapolated in number, -0.5737507 m; elements with EA = 2.8e10 N, in step, -0.5737517 m"
+AXIAL = "16 nonlinear elements of the suite, extrapolated in step: -0.5737869 m"
 SPEED, DURATION, EA = 6.0, 15.0, 2.8e7
 TIMES = np.linspace(6.0, 7.5, 301)
 """The largest lag is at 6.76 s."""
@@ -43,7 +43,7 @@ def largest(lags: Array) -> float:
     return float(curve(curve.derivative().roots(extrapolate=False)).min()) / BEAM.length
 
 
-@case("spin-up", -0.0573750, 5e-8, RIGID)
+@case("spin-up", -0.0573750, 2e-7, RIGID)
 def lag(count: int = 20, tolerance: float = 1e-7) -> float:
     """Lag of rigid links."""
     system = replace(build_system(BEAM, count), base=Base(rotation=hub))
@@ -52,7 +52,7 @@ def lag(count: int = 20, tolerance: float = 1e-7) -> float:
     return largest(motion.in_base()[:, -1, 1])
 
 
-@case("spin-up-elements", -0.0573786, 5e-8, AXIAL)
+@case("spin-up-elements", -0.0573786, 2e-7, AXIAL)
 def lag_of_elements(count: int = 8, tolerance: float = 1e-7) -> float:
     """Lag of nonlinear elements with EA = 2.8e7 N."""
     model = NonlinearHermite(BEAM, count, axial_stiffness=EA)

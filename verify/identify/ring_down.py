@@ -39,7 +39,7 @@ class RingMode:
     """Damping ratio; negative where the record grows."""
     zeta_interval: tuple[float, float]
     amplitude: tuple[float, ...]
-    """At the first sample, of every channel, in its unit."""
+    """At the first sample, of every channel, in its unit; 0 of a constant one."""
 
     @property
     def undamped_hz(self) -> float:
@@ -49,7 +49,10 @@ class RingMode:
 
 @dataclass(frozen=True)
 class RingDown:
-    """Modes of a record by frequency, its noise (sd, unit of the signal), and whether the residuals are white."""
+    """Modes of a record by frequency, and whether the residuals are white.
+
+    `noise`: sd in the unit of the signal; of several over their ranges, times the largest range.
+    """
 
     modes: tuple[RingMode, ...]
     noise: float
@@ -78,7 +81,7 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     scale = np.ptp(y, axis=0)
     if not scale.any():
         raise InputError("record: its signals are constant, nothing rings")
-    y = (y / np.where(scale > 0.0, scale, 1.0))[:, scale > 0.0]
+    y, moving = y[:, scale > 0.0] / scale[scale > 0.0], np.flatnonzero(scale)
     origin = t[0]
     line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
     best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
@@ -99,7 +102,13 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     if best is None:
         raise InputError("record: no frequency rings in it above its noise, give a longer one or more samples")
     count, fitted = best
-    modes = _modes(fitted, count, float(t[-1] - origin), scale[scale > 0.0])
+    sizes = np.zeros((count, len(scale)))
+    value = {name: one.value for name, one in fitted.estimates.items()}
+    for c, channel in enumerate(moving.tolist()):
+        sizes[:, channel] = [
+            scale[channel] * hypot(value[f"c{c},{i}"], value[f"c{c},{count + i}"]) for i in range(count)
+        ]
+    modes = _modes(fitted, float(t[-1] - origin), sizes)
     return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected)
 
 
@@ -183,13 +192,12 @@ def _fit(t: Array, y: Array, poles: ComplexArray) -> Fit:
     return fit(model, y.T.ravel(), list(known), profiles=False)
 
 
-def _modes(fitted: Fit, m: int, duration: float, scale: Array) -> tuple[RingMode, ...]:
-    """Modes by frequency of a fit whose signals were divided by `scale`, (channels,)."""
-    modes, value = [], {name: one.value for name, one in fitted.estimates.items()}
-    for i in range(m):
-        low, high = (edge / (2.0 * pi * duration) for edge in fitted.estimates[f"d{i}"].interval)
-        ratios = [-r / sqrt(1.0 + r * r) for r in (value[f"r{i}"], *fitted.estimates[f"r{i}"].interval)]
-        size = [hypot(value[f"c{c},{i}"], value[f"c{c},{m + i}"]) * scale[c] for c in range(len(scale))]
-        hertz = value[f"d{i}"] / (2.0 * pi * duration)
-        modes.append(RingMode(hertz, (low, high), ratios[0], (ratios[2], ratios[1]), tuple(map(float, size))))
+def _modes(fitted: Fit, duration: float, sizes: Array) -> tuple[RingMode, ...]:
+    """Modes of a fit by frequency, with their amplitudes `sizes`, (modes, channels)."""
+    modes = []
+    for i, size in enumerate(sizes.tolist()):
+        turns, ratio = fitted.estimates[f"d{i}"], fitted.estimates[f"r{i}"]
+        hertz, low, high = (edge / (2.0 * pi * duration) for edge in (turns.value, *turns.interval))
+        zeta, most, least = (-r / sqrt(1.0 + r * r) for r in (ratio.value, *ratio.interval))
+        modes.append(RingMode(hertz, (low, high), zeta, (least, most), tuple(size)))
     return tuple(sorted(modes, key=lambda mode: mode.hz))
