@@ -1,0 +1,180 @@
+"""What the runs of a case in some engine show: figures, errors, orders, likely causes, a verdict."""
+
+from collections.abc import Sequence
+from math import log
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+from verify.analysis.verdict import Margin
+from verify.blas import one_blas_thread
+from verify.errors import InputError
+from verify.report.result import Column, Result, Table
+from verify.sheets.causes import cause
+from verify.sheets.reading import Run, value
+from verify.sheets.sheet import Figure, Sheet, load
+from verify.validation import check_integer
+
+CLASSES = {"A": 0.01, "B": 0.1, "C": 1.0}
+"""Class of an error over the largest that passes."""
+SLACK = 0.3
+"""Of an observed order below the expected one: sizes far from the limit have less."""
+
+
+class Read(NamedTuple):
+    """A figure in one run."""
+
+    figure: Figure
+    value: float
+    error: float
+
+    @property
+    def share(self) -> float:
+        """Of the largest error that passes, less what is uncertain in the exact value."""
+        slack = self.figure.uncertainty / (abs(self.figure.exact) or 1.0)
+        return max(abs(self.error) - slack, 0.0) / self.figure.within
+
+    @property
+    def grade(self) -> str:
+        """The best class, '' where it fails."""
+        return next((name for name, share in CLASSES.items() if self.share <= share), "")
+
+
+@one_blas_thread()
+def judge(
+    case: str, records: Sequence[str | Path], *, counts: Sequence[int] | None = None, within: float | None = None
+) -> Result:
+    """Compare runs of a case in any engine with its exact values.
+
+    `case`: name of a sheet (`verify cases`) or the path of one. `records`: tables with the sheet's columns, of one or
+    more runs; the last is judged. `counts`: the number of links, or of steps, of every run, for orders. `within`:
+    largest error in place of the sheet's. `data["passed"]` says whether the last run passes. Raises InputError for a
+    table without the columns, and for one in which the figures cannot be read.
+    """
+    sheet = load(case)
+    if not records:
+        raise InputError("records: give the table of a run")
+    if counts is not None and len(counts) != len(records):
+        raise InputError(f"counts = {list(counts)}: give one for each of the {len(records)} records")
+    for count in counts or ():
+        check_integer("counts", count, 1)
+    figures = [one if within is None else _limited(one, within) for one in sheet.figure]
+    runs = [[_read(sheet, one, run) for one in figures] for run in (Run(sheet, Path(path)) for path in records)]
+    orders = _orders(figures, runs, counts) if counts and len(runs) > 1 else {}
+    last = {one.figure.name: one.value for one in runs[-1]}
+    margins, rows, listed = [], list[list[object]](), []
+    for one in runs[-1]:
+        why = cause(sheet, one.figure, one.value, last, counts[-1] if counts else None) if one.share > 1.0 else ""
+        margins.append(_margin(one, why))
+        listed.append({"figure": one.figure.name, "value": one.value, "error": one.error, "class": one.grade or None})
+        listed[-1] |= {
+            "exact": one.figure.exact,
+            "source": one.figure.source,
+            "order": orders.get(one.figure.name),
+            "cause": why or None,
+            "passed": one.share <= 1.0,
+        }
+    margins += [_order_margin(one, orders[one.name]) for one in figures if one.order and one.name in orders]
+    for k, run in enumerate(runs):
+        rows += [[one.figure.name, *_run_cells(k, records, counts), *_cells(one)] for one in run]
+    columns = [Column("figure"), Column("run"), Column("value", "", ".7g"), Column("exact", "", ".9g"), Column("unit")]
+    columns += [Column("error", format="+.3g"), Column("passes within", format=".3g"), Column("class")]
+    note = "Errors are relative, absolute where the exact value is 0. Class A: a hundredth of what passes; B: a tenth."
+    tables = [Table(f"Figures of {case}", columns, rows, [note])]
+    if orders:
+        shown = [(one.name, orders[one.name], one.order or None) for one in figures if one.name in orders]
+        heads = [Column("figure"), Column("observed order", format=".3g"), Column("expected, at least")]
+        tables.append(Table("Orders", heads, shown))
+    passed = all(margin.level != "not trusted" for margin in margins)
+    return Result(sheet.title, tables, margins=margins, data={"case": case, "passed": passed, "figures": listed})
+
+
+def _limited(figure: Figure, within: float) -> Figure:
+    from msgspec.structs import replace
+
+    return replace(figure, within=within) if figure.exact else figure
+
+
+def _read(sheet: Sheet, figure: Figure, run: Run) -> Read:
+    found = value(sheet, figure, run)
+    return Read(figure, found, figure.error(found))
+
+
+def _run_cells(k: int, records: Sequence[str | Path], counts: Sequence[int] | None) -> list[str]:
+    return [f"{Path(records[k]).name}, N = {counts[k]}" if counts else Path(records[k]).name]
+
+
+def _cells(one: Read) -> list[object]:
+    return [one.value, one.figure.exact, one.figure.unit or "1", one.error, one.figure.within, one.grade or "fails"]
+
+
+def _margin(one: Read, why: str) -> Margin:
+    """The error of a figure, as a fraction of what passes where it is not relative."""
+    figure, unit = one.figure, f" {one.figure.unit}".rstrip()
+    failure = f"{figure.meaning} is {one.value:.5g}{unit} for {figure.exact:.5g}{unit}"
+    relative = bool(figure.exact)
+    size, limit = (abs(one.error), figure.within) if relative else (one.share, 1.0)
+    cause, _, remedy = why.partition(": ")
+    failure += f": {cause}" if cause else ""
+    return Margin(
+        name=figure.meaning,
+        size=size if one.share > 1.0 else min(size, limit),
+        fine=limit,
+        limit=limit,
+        is_error=relative,
+        failure=failure,
+        remedy=remedy,
+        harm="model form" if why else "discretisation",
+    )
+
+
+def _orders(figures: Sequence[Figure], runs: list[list[Read]], counts: Sequence[int]) -> dict[str, float]:
+    """Observed order of every figure with an error in the last two runs, against the exact value."""
+    found = {}
+    for one, before, after in zip(figures, *runs[-2:], strict=True):
+        if counts[-1] == counts[-2]:
+            raise InputError(f"counts = {list(counts)}: the last two are equal, give runs of different sizes")
+        floor = 3.0 * one.uncertainty / (abs(one.exact) or 1.0)
+        if min(abs(before.error), abs(after.error)) > floor:
+            found[one.name] = log(abs(before.error / after.error)) / log(counts[-1] / counts[-2])
+    return found
+
+
+def _order_margin(figure: Figure, order: float) -> Margin:
+    """An order far below the expected one: an error that more links or smaller steps do not lower as they should."""
+    short = max(figure.order - order, 0.0)
+    failure = f"the error of {figure.name} falls with order {order:.2g}, a right model has {figure.order} or more"
+    remedy = "look for a part of the model that does not depend on the size"
+    return Margin(
+        name=f"order of {figure.name}",
+        size=short,
+        fine=SLACK,
+        limit=1.0 - SLACK,
+        is_error=False,
+        failure=failure,
+        condition=f"the order {order:.2g} of {figure.name} still rises to {figure.order}",
+        remedy=remedy,
+    )
+
+
+def junit(result: Result) -> str:
+    """The figures of a judged run as JUnit XML, a test each."""
+    figures = result.data["figures"]
+    failed = sum(not one["passed"] for one in figures)
+    suite = ElementTree.Element("testsuite", name=result.data["case"], tests=str(len(figures)), failures=str(failed))
+    for one in figures:
+        test = ElementTree.SubElement(suite, "testcase", classname=result.data["case"], name=one["figure"])
+        if not one["passed"]:
+            text = f"{one['figure']} = {one['value']:.7g}, error {one['error']:+.3g}"
+            ElementTree.SubElement(test, "failure", message=text).text = one["cause"] or text
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(suite, encoding="unicode") + "\n"
+
+
+def page(result: Result, command: str) -> str:
+    """The judgement as an HTML page: verdict, figures, orders, sources."""
+    from verify.report.page import Section, render
+
+    assert result.verdict
+    sections = [Section(table.title.lower().replace(" ", "-"), table.title, tables=[table]) for table in result.tables]
+    values = {"title": result.summary, "level": result.verdict.level, "verdict": result.verdict.headline}
+    return render(result.data["case"], sections, others=result.verdict.others, command=command, **values)
