@@ -1,6 +1,7 @@
 """`verify judge`: a verdict on the runs of a case in any engine."""
 
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import click
@@ -37,11 +38,14 @@ def judge(
     """
     sizes = None if counts is None else convert(typed(counts, tuple[int, ...], "counts"), tuple[int, ...], "counts")
     limit = None if within is None else relative_error(within)
+    begun = perf_counter()
     result = judge_case(case, records, counts=sizes, within=limit)
     if junit_file:
         write_whole(Path(junit_file), junit(result), "junit")
     if report:
-        write_whole(Path(report), page(result, f"verify judge {case} {' '.join(records)}"), "report")
+        write_whole(
+            Path(report), page(result, f"verify judge {case} {' '.join(records)}", perf_counter() - begun), "report"
+        )
     shared.show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

@@ -24,6 +24,8 @@ EVEN = 1e-3
 """Largest deviation of a time from even spacing, over the spacing, that the start ignores."""
 GAIN = 10.0
 """Least fall of Schwarz's criterion by a mode: odds of 150 to 1."""
+GROWTH = 100.0
+"""Largest exponent of a trial of the fit at the end of the record: it grows past all signals without overflow."""
 FEWEST = 16
 """Samples of the shortest record."""
 
@@ -159,7 +161,7 @@ def _strongest(t: Array, y: Array, poles: ComplexArray) -> ComplexArray:
 
 def _basis(t: Array, poles: ComplexArray) -> Array:
     """Decaying cosines and sines of the poles, 1 and t, (n, 2 m + 2)."""
-    waves = np.exp(np.outer(t, poles))
+    waves = np.exp(np.outer(t, np.minimum(poles.real, GROWTH / t[-1]) + 1j * poles.imag))
     return np.concatenate([waves.real, waves.imag, np.ones((len(t), 1)), t[:, None] / t[-1]], axis=1)
 
 

@@ -74,7 +74,8 @@ def judge(
             "cause": why or None,
             "passed": one.share <= 1.0,
         }
-    margins += [_order_margin(one, orders[one.name]) for one in figures if one.order and one.name in orders]
+    large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
+    margins += [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
     for k, run in enumerate(runs):
         rows += [[one.figure.name, *_run_cells(k, records, counts), *_cells(one)] for one in run]
     columns = [Column("figure"), Column("run"), Column("value", "", ".7g"), Column("exact", "", ".9g"), Column("unit")]
@@ -170,11 +171,13 @@ def junit(result: Result) -> str:
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(suite, encoding="unicode") + "\n"
 
 
-def page(result: Result, command: str) -> str:
+def page(result: Result, command: str, seconds: float) -> str:
     """The judgement as an HTML page: verdict, figures, orders, sources."""
     from verify.report.page import Section, render
 
     assert result.verdict
     sections = [Section(table.title.lower().replace(" ", "-"), table.title, tables=[table]) for table in result.tables]
     values = {"title": result.summary, "level": result.verdict.level, "verdict": result.verdict.headline}
-    return render(result.data["case"], sections, others=result.verdict.others, command=command, **values)
+    return render(
+        result.data["case"], sections, others=result.verdict.others, command=command, seconds=seconds, **values
+    )

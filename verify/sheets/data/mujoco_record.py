@@ -12,7 +12,7 @@ import numpy as np
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--sheet", default="sheet.toml")
 parser.add_argument("--model", default="model.xml")
-parser.add_argument("--step", type=float, help="s; default: that of the sheet")
+parser.add_argument("--step", type=float, help="s; default: that of the sheet, or of the model if less")
 parser.add_argument("--out", default="run.csv")
 options = parser.parse_args()
 
@@ -22,7 +22,7 @@ case = sheet["chain"]
 model = mujoco.MjModel.from_xml_path(options.model)
 data = mujoco.MjData(model)
 every = case["every_s"]
-per_sample = max(round(every / (options.step or case["step_s"])), 1)
+per_sample = max(round(every / (options.step or min(case["step_s"], model.opt.timestep)) - 1e-9), 1)
 model.opt.timestep = every / per_sample
 model.opt.gravity[:] = case.get("gravity", (0, 0, 0))
 model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
@@ -49,8 +49,8 @@ COLUMNS = {
     "tip_x": lambda: data.site_xpos[tip, 0],
     "tip_y": lambda: data.site_xpos[tip, 1],
     "tip_z": lambda: data.site_xpos[tip, 2],
-    "angle": lambda: data.qpos[model.jnt_qposadr[bending]].sum(),
-    "twist": lambda: data.qpos[model.jnt_qposadr[torsion]].sum(),
+    "angle": lambda: sum(data.qpos[model.jnt_qposadr[bending]]),
+    "twist": lambda: sum(data.qpos[model.jnt_qposadr[torsion]]),
     "energy": lambda: sum(data.energy) - ground,
 }
 force, moment = (np.array(case.get(name, (0, 0, 0)), float) for name in ("tip_force", "tip_moment"))
@@ -64,6 +64,8 @@ for _ in range(round(case["duration_s"] / every) + 1):
             data.qfrc_applied[:] = 0.0
             mujoco.mj_applyFT(model, data, share * force, share * moment, data.site_xpos[tip], body, data.qfrc_applied)
         mujoco.mj_step(model, data)
+    if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+        raise SystemExit(f"diverges at {model.opt.timestep:.3g} s: give a smaller --step")
     mujoco.mj_forward(model, data)  # places and energies of this instant
 np.savetxt(options.out, rows, delimiter=",", header=",".join(sheet["columns"]), comments="", fmt="%.15g")
 print(f"wrote {options.out}: {len(rows)} rows, step {model.opt.timestep:.3g} s")
