@@ -1,0 +1,211 @@
+"""Sheets of cases: exact values by independent derivations, files that an engine runs, verdicts over records."""
+
+import subprocess
+import sys
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from tests.reference import exact_sheets as exact
+from verify import InputError
+from verify.sheets.judge import judge
+from verify.sheets.sheet import DATA, load, names
+from verify.sheets.write import engines, write
+
+STRIP = {"stiffness": 206e9 * 0.02 * 0.0005**3 / 12.0, "mass_per_length": 7850.0 * 0.02 * 0.0005}
+STEEL = {"length": 0.3, "stiffness": 206e9 * 0.025 * 0.003**3 / 12.0, "mass_per_length": 7850.0 * 0.025 * 0.003}
+RING = {"radius": 0.2, "stiffness": 206e9 * 0.02 * 0.001**3 / 12.0, "mass_per_length": 7850.0 * 0.02 * 0.001}
+SHEAR = 70e9 / 2.66
+TIMES = np.arange(2001) / 4000.0
+
+
+def named(prefix, values):
+    return {f"{prefix}{k}": value for k, value in enumerate(values, start=1)}
+
+
+def cables():
+    basic = sqrt((0.35 * 9.81 * 12.0 / 0.1) / 0.35) / (2.0 * pi * 12.0)
+    values = {"1": exact.irvine(1.0), "10": exact.irvine(10.0), "39": 2.0 * pi, "100": exact.irvine(100.0)}
+    return {f"f-{name}": basic * value for name, value in values.items()}
+
+
+def elastica(load_parameter):
+    w, x = exact.elastica(load_parameter)
+    return {"deflection": 0.5 * w, "tip-x": 0.5 * x}
+
+
+INDEPENDENT = {
+    "ring-down": (lambda: named("f", exact.cantilever_hz(**STEEL)), 1e-9),
+    "twist-ring-down": (lambda: named("f", [n * sqrt(SHEAR / 2700.0) / 3.2 for n in (1, 3, 5)]), 1e-12),
+    "elastica-1": (lambda: elastica(1.0), 1e-9),
+    "elastica-4": (lambda: elastica(4.0), 1e-9),
+    "elastica-10": (lambda: elastica(10.0), 1e-9),
+    "hanging-chain": (lambda: named("f", exact.hanging_hz(0.7, 9.81)), 1e-12),
+    "heavy-column": (lambda: named("f", exact.standing_hz(0.6, **STRIP, gravity=9.81)), 1e-8),
+    "ring-in-plane": (lambda: dict(zip(("f2", "f3", "f4"), exact.ring_hz(**RING), strict=True)), 1e-12),
+    "sagging-cable": (cables, 1e-9),
+    "spin-up": (
+        lambda: {"largest-lag": exact.spun_up(6.0, 15.0, 10.0, 1.4e4, 1.2)},
+        1.5e-3,
+    ),  # the reference neglects what is of fourth order in the deflection
+}
+
+
+@pytest.mark.parametrize("name", INDEPENDENT)
+def test_exact_values_are_those_of_an_independent_derivation(name):
+    values, within = INDEPENDENT[name]
+    given = {one.name: one.exact for one in load(name).figure}
+    for figure, value in values().items():
+        assert given[figure] == pytest.approx(value, rel=within), figure
+
+
+def recorded(tmp_path, columns, header, name="run.csv", form="%.10g"):
+    path = tmp_path / name
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt=form)
+    return path
+
+
+def ringing(hertz, zetas, sizes=(0.9e-4, -2.4e-6, 3.1e-7)):
+    omega = 2.0 * pi * np.array(hertz)
+    decay = np.exp(-np.outer(TIMES, omega * np.array(zetas)))
+    return (decay * np.cos(np.outer(TIMES, omega * np.sqrt(1.0 - np.square(zetas)))) * sizes).sum(axis=1)
+
+
+def zetas_of(hertz, first=0.002):
+    return first * np.array(hertz) / hertz[0]
+
+
+def test_an_exact_record_passes_in_every_figure(tmp_path):
+    hertz = exact.cantilever_hz(**STEEL)
+    path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz))], "time,deflection")
+    result = judge("ring-down", [path])
+    assert result.data["passed"]
+    assert {one["class"] for one in result.data["figures"]} == {"A"}
+
+
+@pytest.mark.parametrize(
+    ("header", "times", "values"),
+    [("time [ms],deflection [mm]", 1e3, 1e3), ("Time (s), Deflection (m)", 1.0, 1.0), ("", 1.0, 1.0)],
+)
+def test_units_and_headers_of_a_record_do_not_matter(tmp_path, header, times, values):
+    hertz = exact.cantilever_hz(**STEEL)
+    columns = [times * TIMES, values * ringing(hertz, zetas_of(hertz))]
+    path = tmp_path / "run.csv"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.10g")
+    if not header:
+        path.write_text(path.read_text().lstrip("\n"))
+    assert judge("ring-down", [path]).data["passed"]
+
+
+def first_link_fixed(links):
+    """Frequencies of a cantilever of rigid links, EI/l at every joint but the first, which is rigid; by matrices."""
+    length = STEEL["length"] / links
+    n = links - 1  # free links
+    turn = np.tril(np.ones((n, n)))  # absolute angles from those of the joints
+    place = length * np.tril(np.ones((n, n)), -1) + 0.5 * length * np.eye(n)  # middles from absolute angles
+    mass = STEEL["mass_per_length"] * length * (place.T @ place + length**2 / 12.0 * np.eye(n))
+    stiffness = STEEL["stiffness"] / length * np.eye(n)
+    squares = np.linalg.eigvals(np.linalg.solve(turn.T @ mass @ turn, stiffness)).real
+    return np.sqrt(np.sort(squares)[:3]) / (2.0 * pi)
+
+
+@pytest.mark.parametrize("counts", [None, [12]])
+def test_a_first_link_that_is_fixed_is_named(tmp_path, counts):
+    hertz = first_link_fixed(12)
+    path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz))], "time,deflection")
+    result = judge("ring-down", [path], counts=counts)
+    first = result.data["figures"][0]
+    assert not result.data["passed"]
+    assert first["error"] == pytest.approx(hertz[0] / 27.5840345469 - 1.0, rel=1e-4)
+    assert "12 rigid links" in first["cause"]
+    assert "first link fixed" in first["cause"]
+
+
+@pytest.mark.parametrize(("step", "words"), [(170e-6, "170 µs"), (-25e-6, "energy")])
+def test_damping_of_the_time_step_is_told_from_that_of_the_model(tmp_path, step, words):
+    """First-order steps add omega h/2 to every damping ratio, explicit ones take it off."""
+    hertz = exact.cantilever_hz(**STEEL)
+    zetas = zetas_of(hertz) + pi * np.array(hertz) * step
+    path = recorded(tmp_path, [TIMES, ringing(hertz, zetas)], "time,deflection")
+    found = {one["figure"]: one for one in judge("ring-down", [path]).data["figures"]}
+    assert not found["zeta2"]["passed"]
+    assert words in found["zeta2"]["cause"]
+    assert found["f2"]["passed"]
+
+
+def test_the_order_of_the_errors_is_that_of_the_runs(tmp_path):
+    """Errors a/N^2 + b/N^3; at large N too small an error to tell."""
+    times = np.linspace(0.0, 8.0, 20)
+    paths = []
+    for n in (10, 20):
+        w, x = (value * (1.0 + 0.4 / n**2 + 0.3 / n**3) for value in elastica(4.0).values())
+        rise = 1.0 - np.exp(-6.0 * times)
+        paths.append(recorded(tmp_path, [times, x * rise, w * rise], "time,tip_x,tip_z", f"{n}.csv", "%.14g"))
+    result = judge("elastica-4", paths, counts=[10, 20])
+    order = np.log2((0.4 / 10**2 + 0.3 / 10**3) / (0.4 / 20**2 + 0.3 / 20**3))
+    assert result.data["figures"][0]["order"] == pytest.approx(order, abs=1e-4)
+
+
+def test_an_error_that_more_links_leave_is_not_trusted(tmp_path):
+    times = np.linspace(0.0, 8.0, 20)
+    paths = []
+    for n in (10, 20):
+        w, x = (np.full(20, value * (1.004 + 0.001 / n**2)) for value in elastica(4.0).values())
+        paths.append(recorded(tmp_path, [times, x, w], "time,tip_x,tip_z", f"{n}.csv", "%.14g"))
+    result = judge("elastica-4", paths, counts=[10, 20])
+    assert not result.data["passed"]
+    assert result.verdict.margins[0].name.startswith("order")
+
+
+def test_links_that_turn_by_small_angles_alone_are_named(tmp_path):
+    times = np.linspace(0.0, 8.0, 20)
+    linear = 0.5 * 4.0 / 3.0
+    path = recorded(tmp_path, [times, np.full(20, 0.5), np.full(20, linear)], "time,tip_x,tip_z")
+    figures = judge("elastica-4", [path]).data["figures"]
+    assert all("linear" in one["cause"] for one in figures)
+
+
+@pytest.mark.parametrize(
+    ("rows", "header", "words"),
+    [
+        (slice(0, 3), "time,tip_x,tip_z", "no record"),
+        (slice(None), "time,tip_x,tip_y", "no column 'tip_z'"),
+        (slice(None), "x,y,z", "no record"),
+    ],
+)
+def test_a_table_without_the_columns_is_refused(tmp_path, rows, header, words):
+    times = np.linspace(0.0, 8.0, 40)[rows]
+    path = recorded(tmp_path, [times, 0.1 + times, times], header)
+    with pytest.raises(InputError, match=words):
+        judge("elastica-4", [path])
+
+
+@pytest.mark.parametrize("counts", [[10], [10, 10], [0, 10]])
+def test_counts_belong_to_the_runs(tmp_path, counts):
+    times = np.linspace(0.0, 8.0, 20)
+    path = recorded(tmp_path, [times, 0.3 + 0.0 * times, 0.3 + 0.0 * times], "time,tip_x,tip_z")
+    with pytest.raises(InputError, match="counts"):
+        judge("elastica-4", [path, path], counts=counts)
+
+
+def test_every_number_that_a_sheet_names_is_among_its_columns():
+    for name in names():
+        sheet = load(name)
+        assert sheet.columns[0] == "time"
+        assert {one.column for one in sheet.figure} <= set(sheet.columns), name
+        assert len({one.name for one in sheet.figure}) == len(sheet.figure), name
+
+
+@pytest.mark.parametrize("name", [name for name in names() if "mujoco" in engines(name)])
+def test_mujoco_passes_the_case_by_its_own_script(name, tmp_path):
+    pytest.importorskip("mujoco")
+    files = write(name, tmp_path, "mujoco")
+    run = subprocess.run(
+        [sys.executable, "mujoco_record.py"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    result = judge(name, [tmp_path / "run.csv"])
+    assert result.data["passed"], result.verdict.headline
+    assert (tmp_path / "sheet.toml").read_bytes() == (DATA / name / "sheet.toml").read_bytes()
+    assert files[0] == "sheet.toml"
