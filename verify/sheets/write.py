@@ -15,7 +15,9 @@ MODELS = {"mujoco": "model.xml", "exudyn": "model_exudyn.py", "sdf": "model.sdf"
 def engines(name: str) -> tuple[str, ...]:
     """Engines for which a case has a model or a script that builds it; for others its sheet says what to build."""
     own = tuple(engine for engine in MODELS if (DATA / name / f"{engine}_record.py").exists())
-    return tuple(MODELS) if load(name).chain else own
+    if not load(name).chain:
+        return own
+    return (*own, "sdf") if own else tuple(MODELS)
 
 
 def write(name: str, folder: Path, engine: str = "", count: int | None = None) -> list[str]:
