@@ -1,7 +1,7 @@
 """Record of the case slider-on-wave in MuJoCo: a rigid foot on the crests of a travelling wave. CC0-1.0.
 
-Each contact of the foot is a sphere above a heavy plate of its own, which has the height and the velocity of the surface
-at the place of the sphere. The elastic layer is the compliance of the contacts.
+Each contact of the foot is a sphere above a heavy plate of its own, which has height and velocity of the surface at the
+place of the sphere. The elastic layer is the compliance of the contacts.
 """
 
 import argparse
