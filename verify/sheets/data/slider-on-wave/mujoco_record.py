@@ -39,8 +39,8 @@ def main() -> None:
     parser.add_argument("--step", type=float, default=0.0005, help="time step, s")
     parser.add_argument("--out", default="run.csv")
     parser.add_argument("--count", type=int, default=24, help="contacts of the foot")
-    parser.add_argument("--impratio", type=float, default=10.0)
-    parser.add_argument("--slip-damping", type=float, default=20.0, help="of friction below its limit, 1/s")
+    parser.add_argument("--impratio", type=float, default=100.0)
+    parser.add_argument("--slip-damping", type=float, default=5.0, help="of friction below its limit, 1/s")
     given = parser.parse_args()
     numbers, step = range(given.count), given.step
     x = LENGTH * (np.arange(given.count) + 0.5) / given.count
