@@ -23,7 +23,7 @@ SCENE = """<mujoco>
     </body>
   </worldbody>
 </mujoco>"""
-MU, STIFFNESS, SPEED, END, RATE = 0.31, 210.0, 0.11, 3.0, 200.0
+MU, STIFFNESS, SPEED, END, RATE = 0.31, 210.0, 0.11, 3.0, 250.0
 
 
 def main() -> None:

@@ -18,7 +18,7 @@ SCENE = """<mujoco>
     </body>
   </worldbody>
 </mujoco>"""
-MU, STIFFNESS, START, END, RATE = 0.067, 210.0, 0.0431, 2.5, 200.0
+MU, STIFFNESS, START, END, RATE = 0.067, 210.0, 0.0431, 2.5, 250.0
 
 
 def main() -> None:

@@ -15,7 +15,7 @@ SCENE = """<mujoco>
     </body>
   </worldbody>
 </mujoco>"""
-MU, ANGLE, HEADING, SPEED, GRAVITY, END, RATE = 0.3, np.radians(25.0), 30.0, 1.1, 9.81, 1.0, 200.0
+MU, ANGLE, HEADING, SPEED, GRAVITY, END, RATE = 0.3, np.radians(25.0), 30.0, 1.1, 9.81, 1.0, 250.0
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ SCENE = """<mujoco>
     </body>
   </worldbody>
 </mujoco>"""
-MU, ANGLE, GRAVITY, END, RATE = 0.45, np.radians(17.0), 9.81, 2.0, 200.0
+MU, ANGLE, GRAVITY, END, RATE = 0.45, np.radians(17.0), 9.81, 2.0, 100.0
 
 
 def main() -> None:
