@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest

@@ -111,7 +111,7 @@ def _cells(one: Read) -> list[object]:
 
 def _margin(one: Read, why: str) -> Margin:
     """The error of a figure, as a fraction of what passes where it is not relative."""
-    figure, unit = one.figure, f" {one.figure.unit}".rstrip()
+    figure, unit = one.figure, f" {one.figure.unit}".rstrip(" 1")
     failure = f"{figure.meaning} is {one.value:.5g}{unit} for {figure.exact:.5g}{unit}"
     relative = bool(figure.exact)
     size, limit = (abs(one.error), figure.within) if relative else (one.share, 1.0)
