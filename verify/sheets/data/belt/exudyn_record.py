@@ -1,0 +1,71 @@
+"""Record of the case belt in Exudyn: a mass on a spring, friction by a bristle. CC0-1.0."""
+
+import argparse
+
+import exudyn
+import numpy as np
+from exudyn.itemInterface import (
+    CoordinateSpringDamper,
+    CoordinateSpringDamperExt,
+    MarkerNodeCoordinate,
+    Mass1D,
+    Node1D,
+    NodeGenericData,
+)
+
+MASS, MU, STIFFNESS, SPEED, END, RATE = 1.3, 0.31, 210.0, 0.11, 3.0, 250.0
+
+
+def main() -> None:
+    """Simulate and write the record."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--step", type=float, default=0.0001, help="time step, s")
+    parser.add_argument("--out", default="run.csv")
+    parser.add_argument("--bristle", type=float, default=1e6, help="stiffness while the block sticks, N/m")
+    given = parser.parse_args()
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    # in the frame of the belt, in which the anchor of the spring moves at -SPEED and the block starts at rest
+    block = system.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[0.0]))
+    system.AddObject(Mass1D(mass=MASS, nodeNumber=block))
+    anchor = system.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[-SPEED]))
+    system.AddObject(Mass1D(mass=1e9, nodeNumber=anchor))
+    belt = system.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[0.0]))
+    system.AddObject(Mass1D(mass=1e9, nodeNumber=belt))
+    marks = [system.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in (block, anchor, belt)]
+    system.AddObject(CoordinateSpringDamper(markerNumbers=[marks[1], marks[0]], stiffness=STIFFNESS))
+    state = system.AddNode(NodeGenericData(initialCoordinates=[1.0, 0.0, 0.0], numberOfDataCoordinates=3))
+    system.AddObject(
+        CoordinateSpringDamperExt(
+            markerNumbers=[marks[2], marks[0]],
+            nodeNumber=state,
+            dynamicFrictionForce=MU * MASS * 9.81,
+            stickingStiffness=given.bristle,
+            stickingDamping=2.0 * np.sqrt(given.bristle * MASS) * 0.1,
+            frictionProportionalZone=0.0,
+        )
+    )
+    system.Assemble()
+    rows = [(0.0, 0.0)]
+    every = round(1.0 / (RATE * given.step))
+    counter = [0]
+
+    def record(mbs: exudyn.MainSystem, time: float) -> bool:
+        counter[0] += 1
+        if counter[0] % every == 0:
+            place, at = (mbs.GetNodeOutput(n, exudyn.OutputVariableType.Coordinates) for n in (block, anchor))
+            rows.append((time, float(np.ravel(place)[0] - np.ravel(at)[0])))
+        return True
+
+    system.SetPostStepUserFunction(record)
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = round(END / given.step)
+    settings.timeIntegration.endTime = END
+    settings.solution.file.write = False
+    settings.timeIntegration.verboseMode = 0
+    system.SolveDynamic(settings)
+    np.savetxt(given.out, rows, delimiter=",", fmt="%.9g", header="time,position", comments="")
+
+
+if __name__ == "__main__":
+    main()
