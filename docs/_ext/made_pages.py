@@ -23,6 +23,12 @@ GATES = """# Gates
 Reference, generated from the package: all gates of the packaged scenes. `verify run SCENE` evaluates those of a scene,
 `verify run` all of them.
 """
+CASES = """# Cases
+
+Reference, generated from the package: the sheets that `verify cases NAME --to FOLDER` writes and `verify judge` reads
+([how](../cases.md)). SI; errors are relative, absolute where the exact value is 0. Sheets and scripts are CC0. Names
+are stable.
+"""
 
 
 def table(head, rows):
@@ -84,6 +90,24 @@ def gates():
         yield table(("gate", "quantity", "expected", "reference and why"), rows)
 
 
+def cases():
+    """Every sheet of a case with its figures."""
+    from verify.sheets.sheet import load, names
+    from verify.sheets.write import engines
+
+    yield CASES
+    for name in names():
+        sheet = load(name)
+        rows = [
+            (f"`{x.name}`", x.meaning, f"{x.exact:.10g} {x.unit}", f"{x.within:g}", x.order or "", x.source)
+            for x in sheet.figure
+        ]
+        files = ", ".join(engines(name)) or "none: the sheet says what to build"
+        yield f"({name})=\n## {name}\n\n{sheet.title}. Columns: {', '.join(sheet.columns)}. Files for: {files}.\n"
+        yield "\n".join(f"{word}: {' '.join(getattr(sheet, word.lower()).split())}\n" for word in ("Build", "Record"))
+        yield table(("figure", "meaning", "exact", "passes within", "order", "source"), rows)
+
+
 def plain(_app, _what, _name, _obj, _options, lines):
     """Escape characters that are markup in reStructuredText, outside of `code` and underlines of headings."""
     for i, line in enumerate(lines):
@@ -95,7 +119,7 @@ def plain(_app, _what, _name, _obj, _options, lines):
 def make(_app):
     """Write the pages."""
     MADE.mkdir(exist_ok=True)
-    for page in (scenes, quantities, gates):
+    for page in (scenes, quantities, gates, cases):
         (MADE / f"{page.__name__}.md").write_text("\n".join(page()), "utf-8")
 
 

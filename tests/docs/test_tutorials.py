@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
 GUIDES = [
-    ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "compare", "continuous-integration")
+    ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "compare", "cases", "continuous-integration")
 ]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -87,6 +87,7 @@ def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch,
     if page.stem == "engines":
         pytest.importorskip("mujoco")
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "tests").symlink_to(ROOT / "tests")  # pages name files of the repository from its top folder
     text, status = page.read_text("utf-8"), 0
     for name, body in re.findall(r"^:caption: (\S+)\n\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
         Path(name).write_text(body, "utf-8")
