@@ -18,6 +18,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   bend, Bent                                                   a nonlinear chain under a large load at its tip
   choose, engine_chain                                         enough segments and elements; joints in N m/rad, files
   compare_frequencies, judge_file                              a list of another program; a file of rigid bodies
+  judge_case                                                   the record of a run of a case in any engine
   verdict                                                      how far a model can be trusted at a mode or a drive
   NonlinearHermite, BentElements, large_motion, NonlinearMotion    nonlinear elements: statics, rotation, time
   Base, polynomial, tabulated, Forces                          their prescribed base and loads

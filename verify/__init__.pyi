@@ -52,6 +52,7 @@ from verify.problem.slider import Slider as Slider
 from verify.scene.load import load_scene as load_scene
 from verify.scene.run import run_scene as run_scene
 from verify.segment_model import SegmentModel as SegmentModel
+from verify.sheets.judge import judge_case as judge_case
 from verify.travelling_wave import WaveMeasures as WaveMeasures
 
 __version__: str

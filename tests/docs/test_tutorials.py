@@ -19,7 +19,8 @@ ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
 GUIDES = [
-    ROOT / "docs" / f"{name}.md" for name in ("engines", "actuators", "control", "compare", "cases", "continuous-integration")
+    ROOT / "docs" / f"{name}.md"
+    for name in ("engines", "actuators", "control", "compare", "cases", "continuous-integration")
 ]
 BOX = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 

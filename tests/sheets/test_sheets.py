@@ -10,7 +10,7 @@ import pytest
 
 from tests.reference import exact_sheets as exact
 from verify import InputError
-from verify.sheets.judge import judge
+from verify.sheets.judge import judge_case
 from verify.sheets.sheet import DATA, load, names
 from verify.sheets.write import engines, write
 
@@ -80,7 +80,7 @@ def zetas_of(hertz, first=0.002):
 def test_an_exact_record_passes_in_every_figure(tmp_path):
     hertz = exact.cantilever_hz(**STEEL)
     path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz))], "time,deflection")
-    result = judge("ring-down", [path])
+    result = judge_case("ring-down", [path])
     assert result.data["passed"]
     assert {one["class"] for one in result.data["figures"]} == {"A"}
 
@@ -96,7 +96,7 @@ def test_units_and_headers_of_a_record_do_not_matter(tmp_path, header, times, va
     np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.10g")
     if not header:
         path.write_text(path.read_text().lstrip("\n"))
-    assert judge("ring-down", [path]).data["passed"]
+    assert judge_case("ring-down", [path]).data["passed"]
 
 
 def first_link_fixed(links):
@@ -115,7 +115,7 @@ def first_link_fixed(links):
 def test_a_first_link_that_is_fixed_is_named(tmp_path, counts):
     hertz = first_link_fixed(12)
     path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz))], "time,deflection")
-    result = judge("ring-down", [path], counts=counts)
+    result = judge_case("ring-down", [path], counts=counts)
     first = result.data["figures"][0]
     assert not result.data["passed"]
     assert first["error"] == pytest.approx(hertz[0] / 27.5840345469 - 1.0, rel=1e-4)
@@ -129,7 +129,7 @@ def test_damping_of_the_time_step_is_told_from_that_of_the_model(tmp_path, step,
     hertz = exact.cantilever_hz(**STEEL)
     zetas = zetas_of(hertz) + pi * np.array(hertz) * step
     path = recorded(tmp_path, [TIMES, ringing(hertz, zetas)], "time,deflection")
-    found = {one["figure"]: one for one in judge("ring-down", [path]).data["figures"]}
+    found = {one["figure"]: one for one in judge_case("ring-down", [path]).data["figures"]}
     assert not found["zeta2"]["passed"]
     assert words in found["zeta2"]["cause"]
     assert found["f2"]["passed"]
@@ -143,7 +143,7 @@ def test_the_order_of_the_errors_is_that_of_the_runs(tmp_path):
         w, x = (value * (1.0 + 0.4 / n**2 + 0.3 / n**3) for value in elastica(4.0).values())
         rise = 1.0 - np.exp(-6.0 * times)
         paths.append(recorded(tmp_path, [times, x * rise, w * rise], "time,tip_x,tip_z", f"{n}.csv", "%.14g"))
-    result = judge("elastica-4", paths, counts=[10, 20])
+    result = judge_case("elastica-4", paths, counts=[10, 20])
     order = np.log2((0.4 / 10**2 + 0.3 / 10**3) / (0.4 / 20**2 + 0.3 / 20**3))
     assert result.data["figures"][0]["order"] == pytest.approx(order, abs=1e-4)
 
@@ -154,7 +154,7 @@ def test_an_error_that_more_links_leave_is_not_trusted(tmp_path):
     for n in (10, 20):
         w, x = (np.full(20, value * (1.004 + 0.001 / n**2)) for value in elastica(4.0).values())
         paths.append(recorded(tmp_path, [times, x, w], "time,tip_x,tip_z", f"{n}.csv", "%.14g"))
-    result = judge("elastica-4", paths, counts=[10, 20])
+    result = judge_case("elastica-4", paths, counts=[10, 20])
     assert not result.data["passed"]
     assert result.verdict.margins[0].name.startswith("order")
 
@@ -163,7 +163,7 @@ def test_links_that_turn_by_small_angles_alone_are_named(tmp_path):
     times = np.linspace(0.0, 8.0, 20)
     linear = 0.5 * 4.0 / 3.0
     path = recorded(tmp_path, [times, np.full(20, 0.5), np.full(20, linear)], "time,tip_x,tip_z")
-    figures = judge("elastica-4", [path]).data["figures"]
+    figures = judge_case("elastica-4", [path]).data["figures"]
     assert all("linear" in one["cause"] for one in figures)
 
 
@@ -179,7 +179,7 @@ def test_a_table_without_the_columns_is_refused(tmp_path, rows, header, words):
     times = np.linspace(0.0, 8.0, 40)[rows]
     path = recorded(tmp_path, [times, 0.1 + times, times], header)
     with pytest.raises(InputError, match=words):
-        judge("elastica-4", [path])
+        judge_case("elastica-4", [path])
 
 
 @pytest.mark.parametrize("counts", [[10], [10, 10], [0, 10]])
@@ -187,7 +187,7 @@ def test_counts_belong_to_the_runs(tmp_path, counts):
     times = np.linspace(0.0, 8.0, 20)
     path = recorded(tmp_path, [times, 0.3 + 0.0 * times, 0.3 + 0.0 * times], "time,tip_x,tip_z")
     with pytest.raises(InputError, match="counts"):
-        judge("elastica-4", [path, path], counts=counts)
+        judge_case("elastica-4", [path, path], counts=counts)
 
 
 def test_every_number_that_a_sheet_names_is_among_its_columns():
@@ -212,7 +212,7 @@ def test_every_number_that_a_sheet_names_is_among_its_columns():
     ],
 )
 def test_a_public_defect_is_named_from_its_record_alone(record, name, figure, measured, words):
-    result = judge(name, [Path(__file__).parent / "records" / f"{record}.csv"])
+    result = judge_case(name, [Path(__file__).parent / "records" / f"{record}.csv"])
     found = next(one for one in result.data["figures"] if one["figure"] == figure)
     assert not result.data["passed"]
     assert found["value"] == pytest.approx(measured, rel=1e-3)
@@ -238,7 +238,7 @@ def test_an_engine_passes_the_case_by_its_own_script(name, engine, tmp_path):
     script = [sys.executable, f"{engine}_record.py", *SETTINGS.get((name, engine), ())]
     run = subprocess.run(script, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    result = judge(name, [tmp_path / "run.csv"])
+    result = judge_case(name, [tmp_path / "run.csv"])
     assert result.data["passed"], result.verdict.headline
     assert (tmp_path / "sheet.toml").read_bytes() == (DATA / name / "sheet.toml").read_bytes()
     assert files[0] == "sheet.toml"

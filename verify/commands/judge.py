@@ -10,8 +10,7 @@ from verify.commands import shared
 from verify.commands.choose import relative_error
 from verify.convert import convert, typed
 from verify.files import write_whole
-from verify.sheets.judge import judge as judge_case
-from verify.sheets.judge import junit, page
+from verify.sheets.judge import judge_case, junit, page
 
 
 @click.command()

@@ -41,7 +41,7 @@ class Read(NamedTuple):
 
 
 @one_blas_thread()
-def judge(
+def judge_case(
     case: str, records: Sequence[str | Path], *, counts: Sequence[int] | None = None, within: float | None = None
 ) -> Result:
     """Compare runs of a case in any engine with its exact values.
