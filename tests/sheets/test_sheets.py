@@ -99,6 +99,15 @@ def test_units_and_headers_of_a_record_do_not_matter(tmp_path, header, times, va
     assert judge_case("ring-down", [path]).data["passed"]
 
 
+def test_modes_that_a_record_does_not_have_are_not_read_and_the_others_are(tmp_path):
+    hertz = exact.cantilever_hz(**STEEL)
+    path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz), sizes=(0.9e-4, 0.0, 0.0))], "time,deflection")
+    found = {one["figure"]: one for one in judge_case("ring-down", [path]).data["figures"]}
+    assert found["f1"]["passed"]
+    assert "none is mode 3" in found["f3"]["lost"]
+    assert not found["f3"]["passed"]
+
+
 def first_link_fixed(links):
     """Frequencies of a cantilever of rigid links, EI/l at every joint but the first, which is rigid; by matrices."""
     length = STEEL["length"] / links

@@ -49,6 +49,8 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
     if not off:
         return ""
     gained = [mode for mode, (excess, _) in off.items() if excess < 0.0]
+    if all(abs(values[one.name]) < EXCESS * one.exact for one in sheet.figure if one.name in values and _damped(one)):
+        return "nothing damps the run: add the dashpots that the sheet says"
     if gained:
         listed = " and ".join(map(str, gained))
         return f"the time step feeds energy into mode {listed}: halve it, or take an implicit integrator"
@@ -56,6 +58,10 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
     if len(steps) > 1 and max(steps) < ALIKE * min(steps):
         return f"the integrator damps as implicit Euler does at {with_unit(median(steps), 's')}: take one of order 2"
     return "the integrator or a dashpot damps more than the sheet says: halve the step to tell which"
+
+
+def _damped(figure: Figure) -> bool:
+    return figure.read == "damping" and figure.exact > 0.0
 
 
 def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None) -> str:

@@ -1,12 +1,12 @@
 """What the runs of a case in some engine show: figures, errors, orders, likely causes, a verdict."""
 
-from collections.abc import Sequence
-from math import log
+from collections.abc import Mapping, Sequence
+from math import inf, isfinite, log, nan
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from verify.analysis.verdict import Margin
+from verify.analysis.verdict import Margin, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError
 from verify.report.result import Column, Result, Table
@@ -22,17 +22,22 @@ SLACK = 0.3
 
 
 class Read(NamedTuple):
-    """A figure in one run."""
+    """A figure in one run; not a number, and why, where the record does not have it."""
 
     figure: Figure
     value: float
     error: float
+    lost: str = ""
+
+    def known(self, number: float) -> float | None:
+        """A number of it, None where the record does not have it."""
+        return None if self.lost else number
 
     @property
     def share(self) -> float:
         """Of the largest error that passes, less what is uncertain in the exact value."""
         slack = self.figure.uncertainty / (abs(self.figure.exact) or 1.0)
-        return max(abs(self.error) - slack, 0.0) / self.figure.within
+        return inf if self.lost else max(abs(self.error) - slack, 0.0) / self.figure.within
 
     @property
     def grade(self) -> str:
@@ -61,33 +66,49 @@ def judge_case(
     figures = [one if within is None else _limited(one, within) for one in sheet.figure]
     runs = [[_read(sheet, one, run) for one in figures] for run in (Run(sheet, Path(path)) for path in records)]
     orders = _orders(figures, runs, counts) if counts and len(runs) > 1 else {}
-    last = {one.figure.name: one.value for one in runs[-1]}
-    margins, rows, listed = [], list[list[object]](), []
-    for one in runs[-1]:
-        why = cause(sheet, one.figure, one.value, last, counts[-1] if counts else None) if one.share > 1.0 else ""
-        margins.append(_margin(one, why))
-        listed.append({"figure": one.figure.name, "value": one.value, "error": one.error, "class": one.grade or None})
-        listed[-1] |= {
-            "exact": one.figure.exact,
-            "source": one.figure.source,
-            "order": orders.get(one.figure.name),
-            "cause": why or None,
-            "passed": one.share <= 1.0,
-        }
+    if all(one.lost for one in runs[-1]):
+        raise InputError(runs[-1][0].lost)
+    last = {one.figure.name: one.value for one in runs[-1] if not one.lost}
+    size = counts[-1] if counts else None
+    whys = [cause(sheet, one.figure, one.value, last, size) if 1.0 < one.share < inf else "" for one in runs[-1]]
+    margins = [_margin(one, why) for one, why in zip(runs[-1], whys, strict=True)]
     large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
     margins += [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
-    for k, run in enumerate(runs):
-        rows += [[one.figure.name, *_run_cells(k, records, counts), *_cells(one)] for one in run]
+    titles = [Path(path).name for path in records]
+    titles = titles if counts is None else [f"{name}, N = {n}" for name, n in zip(titles, counts, strict=True)]
+    figures_read = [_data(one, why, orders) for one, why in zip(runs[-1], whys, strict=True)]
+    passed = all(margin.level != "not trusted" for margin in margins)
+    data = {"case": case, "passed": passed, "figures": figures_read}
+    return Result(sheet.title, _tables(case, titles, runs, orders), margins=margins, data=data)
+
+
+def _data(one: Read, why: str, orders: Mapping[str, float]) -> dict[str, object]:
+    """A figure of the judged run for programs."""
+    figure = one.figure
+    found = {"figure": figure.name, "value": one.value, "error": one.error, "class": one.grade or None}
+    found |= {"exact": figure.exact, "source": figure.source, "order": orders.get(figure.name)}
+    return found | {"cause": why or None, "lost": one.lost or None, "passed": one.share <= 1.0}
+
+
+def _tables(case: str, titles: list[str], runs: list[list[Read]], orders: Mapping[str, float]) -> list[Table]:
+    """Figures of all runs, and the orders of their errors."""
     columns = [Column("figure"), Column("run"), Column("value", "", ".7g"), Column("exact", "", ".9g"), Column("unit")]
     columns += [Column("error", format="+.3g"), Column("passes within", format=".3g"), Column("class")]
     note = "Errors are relative, absolute where the exact value is 0. Class A: a hundredth of what passes; B: a tenth."
+    rows = list[list[object]]()
+    for title, run in zip(titles, runs, strict=True):
+        for one in run:
+            figure, grade = one.figure, one.grade or ("not read" if one.lost else "fails")
+            rows.append([figure.name, title, one.known(one.value), figure.exact, figure.unit or "1"])
+            rows[-1] += [one.known(one.error), figure.within, grade]
     tables = [Table(f"Figures of {case}", columns, rows, [note])]
-    if orders:
-        shown = [(one.name, orders[one.name], one.order or None) for one in figures if one.name in orders]
+    shown = [
+        (x.figure.name, orders[x.figure.name], x.figure.order or None) for x in runs[-1] if x.figure.name in orders
+    ]
+    if shown:
         heads = [Column("figure"), Column("observed order", format=".3g"), Column("expected, at least")]
         tables.append(Table("Orders", heads, shown))
-    passed = all(margin.level != "not trusted" for margin in margins)
-    return Result(sheet.title, tables, margins=margins, data={"case": case, "passed": passed, "figures": listed})
+    return tables
 
 
 def _limited(figure: Figure, within: float) -> Figure:
@@ -97,20 +118,17 @@ def _limited(figure: Figure, within: float) -> Figure:
 
 
 def _read(sheet: Sheet, figure: Figure, run: Run) -> Read:
-    found = value(sheet, figure, run)
+    try:
+        found = value(sheet, figure, run)
+    except InputError as error:
+        return Read(figure, nan, nan, str(error))
     return Read(figure, found, figure.error(found))
-
-
-def _run_cells(k: int, records: Sequence[str | Path], counts: Sequence[int] | None) -> list[str]:
-    return [f"{Path(records[k]).name}, N = {counts[k]}" if counts else Path(records[k]).name]
-
-
-def _cells(one: Read) -> list[object]:
-    return [one.value, one.figure.exact, one.figure.unit or "1", one.error, one.figure.within, one.grade or "fails"]
 
 
 def _margin(one: Read, why: str) -> Margin:
     """The error of a figure, as a fraction of what passes where it is not relative."""
+    if one.lost:
+        return void(one.figure.meaning, one.lost.partition(": ")[2] or one.lost)
     figure, unit = one.figure, f" {one.figure.unit}".rstrip(" 1")
     failure = f"{figure.meaning} is {one.value:.5g}{unit} for {figure.exact:.5g}{unit}"
     relative = bool(figure.exact)
@@ -136,7 +154,7 @@ def _orders(figures: Sequence[Figure], runs: list[list[Read]], counts: Sequence[
         if counts[-1] == counts[-2]:
             raise InputError(f"counts = {list(counts)}: the last two are equal, give runs of different sizes")
         floor = 3.0 * one.uncertainty / (abs(one.exact) or 1.0)
-        if min(abs(before.error), abs(after.error)) > floor:
+        if isfinite(before.error + after.error) and min(abs(before.error), abs(after.error)) > floor:
             found[one.name] = log(abs(before.error / after.error)) / log(counts[-1] / counts[-2])
     return found
 
@@ -166,7 +184,7 @@ def junit(result: Result) -> str:
     for one in figures:
         test = ElementTree.SubElement(suite, "testcase", classname=result.data["case"], name=one["figure"])
         if not one["passed"]:
-            text = f"{one['figure']} = {one['value']:.7g}, error {one['error']:+.3g}"
+            text = one["lost"] or f"{one['figure']} = {one['value']:.7g}, error {one['error']:+.3g}"
             ElementTree.SubElement(test, "failure", message=text).text = one["cause"] or text
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(suite, encoding="unicode") + "\n"
 
