@@ -42,9 +42,8 @@ def judge(
     if junit_file:
         write_whole(Path(junit_file), junit(result), "junit")
     if report:
-        write_whole(
-            Path(report), page(result, f"verify judge {case} {' '.join(records)}", perf_counter() - begun), "report"
-        )
+        command = " ".join(["verify judge", case, *records, *(["--counts", counts] if counts else [])])
+        write_whole(Path(report), page(result, command, perf_counter() - begun), "report")
     shared.show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)
