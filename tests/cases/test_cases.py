@@ -1,5 +1,6 @@
 """Models on problems of known answer that no gate of a scene judges: orders of the errors, a moving force, energy."""
 
+import numpy as np
 import pytest
 
 from verify.analysis.comparison import observed_order
@@ -15,11 +16,25 @@ from verify.cases.table import CASES
         ("restitution", 500, 1.0),
         ("pendulum", 20, 2.0),
         ("heavy-column", 4, 4.0),
+        ("ring-2", 23, 4.0),
+        ("ring-across-3", 37, 4.0),
+        ("ring-balanced-2", 37, 4.0),
+        ("ring-chords-2", 17, 2.0),
     ],
 )
 def test_error_falls_with_the_order_of_the_model(name, first, order):
     counts = [first, 2 * first, 4 * first]
     assert observed_order(counts, [CASES[name].error(n) for n in counts]) == pytest.approx(order, abs=0.15)
+
+
+@pytest.mark.parametrize(("mode", "across"), [(2, False), (3, False), (3, True)])
+def test_rings_of_rigid_arcs_have_the_law_of_straight_links(mode, across):
+    """-a^4 int kappa^2 / (1440 int u^2), kappa and u of the ring's mode, EI/GJ = 1.3; next terms of relative size a^2."""
+    case, n = CASES[f"ring-across-{mode}" if across else f"ring-{mode}"], mode
+    bent = n * n * (n * n - 1) / (n * n + 1.3) if across else n * (n * n - 1)
+    square = bent**2 if across else bent**2 / (n * n + 1)
+    law = -((2 * np.pi / 83) ** 4) * square / 1440
+    assert case.error(83) == pytest.approx(law, rel=0.02)
 
 
 def test_segments_under_a_moving_force_deflect_as_by_frybas_series():
