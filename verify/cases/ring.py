@@ -22,7 +22,7 @@ omega^2 = n^2 (n^2 - 1)^2/(n^2 + EI/GJ).
 """
 
 from math import pi, sin, sqrt, tan
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -84,6 +84,6 @@ def frequency(
     return float(np.sqrt(1.0 / shifted[0] - 1.0))
 
 
-def on_circle(angles: Array) -> Array:
+def on_circle(angles: Any) -> Array:
     """Points of the unit circle, (..., 3)."""
     return np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=-1)
