@@ -150,13 +150,12 @@ def _vector(name: str, value: Numbers) -> Array:
 def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers | None, wall: Wall) -> Rod:
     """The chain at rest. Raises InputError."""
     if stiffness is None:
-        pieces = [Section(length=long, bending_stiffness=one, mass_per_length=1.0) for long, one, _ in shafts(beam)]
-        planes = [_bar(beam, pieces[0].bending_stiffness, tuple(pieces)), beam, in_plane(beam, "width")]
+        planes = [_bar(beam, *shafts(beam)[:, :2].tolist()), beam, in_plane(beam, "width")]
     else:
         given = _vector("stiffness", stiffness)
         if beam.section or not (given > 0.0).all():
             raise InputError(f"stiffness = {shown(stiffness)}: give GJ and two EI above zero, N m^2, of a uniform beam")
-        planes = [_bar(beam, float(one)) for one in given]
+        planes = [_bar(beam, (beam.length, one)) for one in given.tolist()]
     system, *others = (build_system(plane, count, wall=wall) for plane in planes)
     masses = build_system(beam, count, wall=wall).masses
     bars = np.array([plane.pieces[-1].bending_stiffness for plane in planes])
@@ -165,14 +164,15 @@ def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers
     return Rod(joints, middles, axes, springs, masses, 0.5 * system.lengths[-1] / bars)
 
 
-def _bar(beam: Beam, stiffness: float | None, section: tuple[Section, ...] = ()) -> Beam:
-    """A beam whose bending stiffness is that of torsion or of another plane."""
+def _bar(beam: Beam, *pieces: tuple[float, float]) -> Beam:
+    """A beam whose bending stiffness is that of torsion or of another plane, of (length, stiffness) of its pieces."""
+    parts = [Section(length=length, bending_stiffness=one, mass_per_length=1.0) for length, one in pieces]
     return Beam(
         length=beam.length,
         supports=beam.supports,
-        bending_stiffness=stiffness,
-        mass_per_length=beam.mass_per_length,
-        section=section if len(section) > 1 else (),
+        bending_stiffness=pieces[0][1],
+        mass_per_length=1.0,
+        section=parts if len(parts) > 1 else (),
     )
 
 
@@ -227,9 +227,8 @@ def _joints(rod: Rod, rotations: Array) -> Joints:
     moments = m - 0.5 * np.cross(phi, m) + c[:, None] * twice
     unit = np.eye(3)
     by_phi = k[:, None] * unit + 0.5 * (hat(m) - around * k[:, None])
-    by_phi += c[:, None, None] * (
-        (phi * m).sum(axis=1)[:, None, None] * unit + 2.0 * outer(phi, m) - 2.0 * outer(m, phi)
-    )
+    turn = phi[:, :, None] * m[:, None]
+    by_phi += c[:, None, None] * ((phi * m).sum(axis=1)[:, None, None] * unit + 2.0 * (turn - np.swapaxes(turn, 1, 2)))
     by_phi += (slope[:, None] * twice)[:, :, None] * phi[:, None] - (c * t2)[:, None, None] * k[:, None] * unit
     by_spin = by_phi @ (unit + 0.5 * around + c[:, None, None] * around @ around)
     stiffness = after @ (0.5 * (by_spin + np.swapaxes(by_spin, 1, 2))) @ np.swapaxes(after, 1, 2)
@@ -299,7 +298,7 @@ def _equations(rod: Rod, rotations: Array, loads: Array) -> tuple[Array, Array, 
     size = abs(joints.moments).max() + abs(loads[1]).max()
     for arms, pulls in ((np.diff(rod.joints, axis=0), beyond), (rod.middles - rod.joints[:-1], weights)):
         turned = (rotations @ arms[..., None])[..., 0]
-        both = outer(pulls, turned)
+        both = pulls[:, :, None] * turned[:, None]
         forces -= np.cross(turned, pulls)
         hessian += np.trace(both, axis1=1, axis2=2)[:, None, None] * np.eye(3) - 0.5 * (both + np.swapaxes(both, 1, 2))
         size += abs(np.cross(turned, pulls)).max()
@@ -321,8 +320,3 @@ def _bands(diagonal: Array, upper: Array) -> Array:
 def hat(vectors: Array) -> Array:
     """Matrices (..., 3, 3) of the products vector x, of (..., 3)."""
     return np.asarray(np.cross(vectors[..., None, :], np.eye(3)).swapaxes(-1, -2))
-
-
-def outer(a: Array, b: Array) -> Array:
-    """Products a_i b_j of vectors (..., 3)."""
-    return a[..., :, None] * b[..., None, :]
