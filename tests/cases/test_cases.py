@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from reference.curved_rods import frequencies, helix
 
 from verify.analysis.comparison import observed_order
 from verify.cases.energy import imbalance
@@ -40,6 +41,16 @@ def test_rings_of_rigid_arcs_have_the_law_of_straight_links(mode, across):
     square = bent**2 if across else bent**2 / (n * n + 1)
     law = -((2 * np.pi / 83) ** 4) * square / 1440
     assert case.error(83) == pytest.approx(law, rel=0.02)
+
+
+def test_frequencies_of_rings_are_those_of_ritzs_method():
+    curve, axes = helix(1.0, 0.0)
+    stiffness = np.array([1 / 1.3, 1.0, 2.3])  # GJ; EI across the plane; in the plane
+    found = frequencies(
+        curve, axes, 2 * np.pi, lambda s: np.tile(stiffness, (len(s), 1)), lambda s: 1 + 0 * s, degree=34, closed=True
+    )
+    pairs = sorted([CASES[f"ring-across-{n}"].exact for n in (2, 3)] + [CASES["ring-2"].exact * np.sqrt(2.3)])
+    assert found[:6] == pytest.approx(np.repeat(pairs, 2), rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,18 @@
 """Large static bending and torsion in space against the planar chain, shooting, and what rotations and work demand."""
 
+from dataclasses import replace
 from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
 from msgspec import structs
+from reference.curved_rods import frequencies, helix
 from reference.space_rods import hanging
 
-from verify import Beam, InputError, PointMass, Section, bend, bend_in_space
+from verify import Beam, InputError, PointMass, Section, SegmentModel, bend, bend_in_space
+from verify.chain.linearisation import linearise
+from verify.chain.statics import solve_static
+from verify.chain.system import LinkLoad, build_system
 
 ROD = Beam(
     length=0.83, width=0.0043, thickness=0.0021, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free")
@@ -119,6 +124,38 @@ def test_without_loads_a_curved_rod_keeps_its_shape():
     assert bent.tip == pytest.approx(hanging(L, STIFFNESS, np.zeros(3), curvature=twisted)[0], abs=1e-6 * L)
 
 
+def test_a_straight_rod_at_rest_has_the_frequencies_of_the_linear_chain_in_both_planes():
+    planes = [SegmentModel(beam, 14).modes(4).frequencies_hz for beam in (ROD, TURNED)]
+    found = bend_in_space(ROD, 14).frequencies_hz(6)
+    assert found == pytest.approx(np.sort(np.concatenate(planes))[:6], rel=1e-9)
+
+
+def test_about_an_equilibrium_its_plane_has_the_frequencies_of_the_planar_chain():
+    system, given = build_system(ROD, 14), {"stiffness": (EI, EI, 400 * EI)}
+    end = LinkLoad(link=14, at=float(system.lengths[-1]), force=(0.6 * FORCE, 1.8 * FORCE))
+    loaded = replace(system, loads=(end,), gravity=(-3.0, 8.0))
+    planar = linearise(loaded, solve_static(loaded)).frequencies() / (2 * pi)
+    bent = bend_in_space(ROD, 14, (0.6 * FORCE, 0, 1.8 * FORCE), gravity=(-3.0, 0, 8.0), **given)
+    away = abs(bent.frequencies_hz(6)[:, None] / planar[:3] - 1)
+    assert away.min(axis=0) == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize(("radius", "pitch"), [(L / 2.1, 0.0), (L / 4.1, 0.05)])
+def test_arcs_and_helices_at_rest_have_the_frequencies_of_rods_with_order_four(radius, pitch):
+    curve, axes = helix(radius, pitch)
+    turn = axes(np.zeros(1))[0].T @ [0.0, 0.0, 1.0 / np.hypot(radius, pitch)]
+    mass = ROD.mass_per_length
+    exact = frequencies(curve, axes, L, lambda s: np.tile(STIFFNESS, (len(s), 1)), lambda s: mass + 0 * s)[:3] / (
+        2 * pi
+    )
+    errors = []
+    for n in (25, 50):
+        rod = bend_in_space(ROD, n, curvature=lambda s: np.tile(turn, (len(s), 1)), stiffness=STIFFNESS)
+        errors.append(rod.frequencies_hz(3) / exact - 1)
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.5)
+    assert errors[1] == pytest.approx(0.0, abs=2e-6)
+
+
 @pytest.mark.parametrize(
     ("beam", "settings", "field"),
     [
@@ -135,3 +172,8 @@ def test_without_loads_a_curved_rod_keeps_its_shape():
 def test_bad_bending_in_space_is_refused_by_field(beam, settings, field):
     with pytest.raises(InputError, match=field):
         bend_in_space(beam, **{"count": 10, "force": (0.0, 0.0, 1.0), **settings})
+
+
+def test_frequencies_under_a_moment_are_refused():
+    with pytest.raises(InputError, match="moment"):
+        bend_in_space(ROD, 10, moment=(MOMENT, 0.0, 0.0)).frequencies_hz()

@@ -12,6 +12,7 @@ Newton's method converges quadratically, in O(N) operations.
 """
 
 from collections.abc import Callable
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -71,12 +72,41 @@ class BentInSpace(Struct, frozen=True, eq=False, kw_only=True):
     """(3,), m: of the tip from its place at rest."""
     energy: float
     """Elastic energy, J: of the joints, and of the last half piece under the applied moment."""
+    rod: Rod
+    """At rest."""
+    loads: Array
+    """(3, 3): force, N, moment, N m, gravity, m/s^2."""
     __repr__ = one_line(count="", displacement="m", energy="J")
 
     @property
     def tip(self) -> Array:
         """(3,), m: the free end."""
         return np.asarray(self.joints[-1])
+
+    def frequencies_hz(self, n_modes: int = 5) -> Array:
+        """First natural frequencies about the equilibrium, (n_modes,), Hz; sections have no rotary inertia.
+
+        Order 4 at rest, whatever the shape there (docs/theory.md, "Curved rods"), and 2 under load. Raises InputError
+        under a moment, and for more modes than pieces.
+        """
+        from scipy.linalg import eigh
+
+        n, rod, every = self.count, self.rod, np.arange(self.count)
+        check_integer("n_modes", n_modes, 1, n)
+        if self.loads[1].any():
+            raise InputError("moment: one of constant direction has no symmetric stiffness in space, leave it out")
+        _, hessian, coupling, _ = _equations(rod, self.rotations, self.loads)
+        stiffness, chords = np.zeros((n, 3, n, 3)), np.diff(self.joints, axis=0)
+        stiffness[every, :, every] = hessian
+        stiffness[every[:-1], :, every[1:]], stiffness[every[1:], :, every[:-1]] = coupling, coupling.swapaxes(1, 2)
+        arms = np.tri(n, k=-1)[:, :, None] * chords
+        arms[every, every] = (self.rotations @ (rod.middles - rod.joints[:-1])[..., None])[..., 0]
+        moved = (hat(arms) * np.sqrt(rod.masses)[:, None, None, None]).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
+        mass = (moved.T @ moved).reshape(n, 3, n, 3)
+        mass[every, :, every] -= rod.masses[:, None, None] / 12.0 * hat(chords) @ hat(chords)
+        pair = (mass.reshape(3 * n, -1), stiffness.reshape(3 * n, -1))
+        found = eigh(*pair, eigvals_only=True, subset_by_index=[3 * n - n_modes, 3 * n - 1])
+        return np.asarray(0.5 / (pi * np.sqrt(found[::-1])))
 
 
 @one_blas_thread()
@@ -132,6 +162,8 @@ def bend_in_space(
         rotations=rotations,
         moments=np.vstack([state.moments, loads[1]]),
         displacement=joints[-1] - rod.joints[-1],
+        rod=rod,
+        loads=loads,
         energy=0.5 * float((rod.springs * state.angles**2).sum() + rod.last @ own**2),
     )
 
