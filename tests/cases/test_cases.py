@@ -43,6 +43,10 @@ def test_rings_of_rigid_arcs_have_the_law_of_straight_links(mode, across):
     assert case.error(83) == pytest.approx(law, rel=0.02)
 
 
+def test_a_ring_of_chords_has_the_law_of_a_polygon():
+    assert CASES["ring-polygon"].error() == pytest.approx(0.0, abs=1e-10)
+
+
 def test_frequencies_of_rings_are_those_of_ritzs_method():
     curve, axes = helix(1.0, 0.0)
     stiffness = np.array([1 / 1.3, 1.0, 2.3])  # GJ; EI across the plane; in the plane

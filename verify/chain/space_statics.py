@@ -42,18 +42,12 @@ Curvature = Callable[[Array], Array]
 class Rod(NamedTuple):
     """A chain of rigid pieces at rest, clamped at the origin, in the axes of the clamp."""
 
-    joints: Array
-    """(N + 1, 3), m: the joints from the clamp on, and the tip."""
-    middles: Array
-    """(N, 3), m: centres of mass."""
-    axes: Array
-    """(N + 1, 3, 3): tangent, across the width, across the thickness in columns."""
-    springs: Array
-    """(N, 3), N m/rad: about these axes, GJ first."""
-    masses: Array
-    """(N,), kg."""
-    last: Array
-    """(3,), rad/(N m): compliances of the last half piece."""
+    joints: Array  # (N + 1, 3), m, from the clamp to the tip
+    middles: Array  # (N, 3), m: centres of mass
+    axes: Array  # (N + 1, 3, 3): tangent, across the width, across the thickness in columns
+    springs: Array  # (N, 3), N m/rad, about these axes, GJ first
+    masses: Array  # (N,), kg
+    last: Array  # (3,), rad/(N m): compliances of the last half piece
 
 
 class BentInSpace(Struct, frozen=True, eq=False, kw_only=True):
