@@ -143,7 +143,7 @@ def bend_in_space(
             kind = "stable equilibria" if not loads[1].any() else "equilibria"
             raise InputError(
                 f"force = {shown(force)} N: the path of {kind} ends at {share:.4g} of the load, reduce it or add a "
-                "small force out of its plane"
+                "small force across the rod, or out of its plane"
             )
     state = _joints(rod, rotations)
     chords = (rotations @ np.diff(rod.joints, axis=0)[..., None])[..., 0]
