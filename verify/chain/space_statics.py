@@ -32,7 +32,8 @@ from verify.settings import DEFAULT, Wall
 from verify.validation import check_integer
 
 SMALL = 0.1  # rad, below which c is its series: the first term left out is 2e-16 of c phi^2
-LEAST = 1e-6  # share of the load at which the path of equilibria is given up
+LEAST = 1e-6  # step over the share of the load that is reached at which the path of equilibria is given up
+ATTEMPTS = 1000  # load steps; a rod that a moment winds up ten times takes a hundred
 ROUNDING = 1e-14  # rad, of a joint's angle
 STEPS = 4  # of a piece in the integration of the shape at rest, an even number (Simpson)
 BAND = 5
@@ -132,19 +133,18 @@ def bend_in_space(
     loads = np.array([_vector(*one) for one in (("force", force), ("moment", moment), ("gravity", gravity))])
     rod = _rod(structs.replace(beam, loss_factor=0.0), count, curvature, stiffness, wall)
     rotations, share, part = np.tile(np.eye(3), (count, 1, 1)), 0.0, 1.0
-    while share < 1.0:
+    for _ in range(ATTEMPTS):
         goal = min(share + part, 1.0)
         found = _newton(rod, rotations, goal * loads)
-        if found is not None:
-            rotations, share, part = found, goal, 2.0 * part
-        elif part > LEAST:
-            part *= 0.25
-        else:
-            kind = "stable equilibria" if not loads[1].any() else "equilibria"
-            raise InputError(
-                f"force = {shown(force)} N: the path of {kind} ends at {share:.4g} of the load, reduce it or add a "
-                "small force across the rod, or out of its plane"
-            )
+        rotations, share, part = (rotations, share, 0.25 * part) if found is None else (found, goal, 2.0 * part)
+        if share == 1.0 or part < LEAST * max(share, LEAST):
+            break
+    if share < 1.0:
+        kind = "stable equilibria" if not loads[1].any() else "equilibria"
+        raise InputError(
+            f"force = {shown(force)} N: the path of {kind} ends at {share:.4g} of the load, reduce it or add a small "
+            "force across the rod, or out of its plane"
+        )
     state = _joints(rod, rotations)
     chords = (rotations @ np.diff(rod.joints, axis=0)[..., None])[..., 0]
     joints = np.vstack([np.zeros(3), np.cumsum(chords, axis=0)])
