@@ -16,6 +16,8 @@ from verify.answers.chains import engine_chain as engine_chain
 from verify.answers.frequencies import compare_frequencies as compare_frequencies
 from verify.answers.sizes import choose as choose
 from verify.answers.trust import verdict as verdict
+from verify.chain.space_statics import BentInSpace as BentInSpace
+from verify.chain.space_statics import bend_in_space as bend_in_space
 from verify.chain.statics import Bent as Bent
 from verify.chain.statics import bend as bend
 from verify.dynamics.arguments import Excitation as Excitation

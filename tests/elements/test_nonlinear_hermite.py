@@ -6,8 +6,10 @@ from math import cos, pi, sin, sqrt
 import msgspec
 import numpy as np
 import pytest
+from reference.curved_rods import frequencies, helix
 from reference.elastica import follower_tip
 from reference.rotating import flapping
+from scipy.integrate import quad_vec
 from scipy.interpolate import CubicSpline
 
 from verify import (
@@ -55,6 +57,43 @@ def test_the_straight_beam_has_the_frequencies_of_the_linear_elements(supports):
     linear = HermiteModel(beam, 12).modes(5).frequencies_hz
     assert model.bend().frequencies_hz()[:5] == pytest.approx(linear, rel=1e-9)  # rounding of EA in the same matrix
     assert model.bend().frequencies_hz(flapping=True)[:5] == pytest.approx(linear, rel=1e-9)
+
+
+def test_an_arc_has_the_frequencies_of_an_inextensible_rod_with_order_four():
+    radius = L / 2.1
+
+    def stiffness(s):
+        return np.outer(np.ones(len(s)), [1e7, 1e7, EI])  # torsion and the other plane are far above
+
+    exact = frequencies(*helix(radius, 0.0), L, stiffness, lambda s: RHO_A + 0 * s)[:2] / (2 * pi)
+    models = (replace(elements(n, axial=1e8), curvature=lambda s: 0 * s + 1 / radius) for n in (6, 12))
+    errors = [model.bend().frequencies_hz()[:2] / exact - 1 for model in models]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
+    assert errors[1] == pytest.approx(0.0, abs=5e-5)
+
+
+@pytest.mark.parametrize("moment", [-1.7, 0.9])
+def test_a_moment_adds_a_constant_curvature_to_that_of_a_clothoid(moment):
+    moment *= EI / L
+
+    def place(bent):
+        return quad_vec(lambda s: np.exp(1j * (0.8 * s + 0.9 * s**2 + bent * s)), 0.0, L, epsabs=1e-13)[0]
+
+    clothoid = replace(elements(32, axial=1e8), curvature=lambda s: 0.8 + 1.8 * s)
+    found, exact, rest = clothoid.bend(moment=moment), place(moment / EI), place(0.0)
+    assert complex(*clothoid.bend().tip) == pytest.approx(rest, abs=1e-10 * L)
+    assert complex(*found.tip) == pytest.approx(exact, abs=1.5e-6 * L)
+    assert complex(found.shortening, found.deflection) == pytest.approx((rest - exact).conjugate(), abs=1.5e-6 * L)
+    assert found.turn == pytest.approx(moment * L / EI, abs=1.5e-6)
+    assert found.energy == pytest.approx(moment**2 * L / (2 * EI), rel=1.5e-6)
+
+
+@pytest.mark.parametrize("curvature", [lambda s: 1.0, lambda s: 1 / (s - s)])
+def test_a_curvature_that_is_no_finite_array_is_refused(curvature):
+    with pytest.raises(InputError, match="curvature"), np.errstate(divide="ignore", invalid="ignore"):
+        replace(elements(4), curvature=curvature).bend()
+    with pytest.raises(InputError, match="supports"):
+        replace(elements(4, msgspec.structs.replace(CANTILEVER, supports=("pinned", "free"))), curvature=curvature)
 
 
 @pytest.mark.parametrize(("load", "deflection", "shortening", "turn"), ELASTICA)
@@ -204,7 +243,7 @@ def test_links_and_elements_move_alike_on_a_base_that_turns_and_shakes():
         chain = replace(build_system(beam, count), base=base, gravity=(1.1, -4.0))
         tips.append(motion.simulate(chain, at_rest(chain), times, tolerance=1e-9).in_base()[:, -1])
     model, forces = NonlinearHermite(beam, 12, axial_stiffness=1e5), Forces(gravity=np.array([1.1, -4.0]))
-    start_rate = np.zeros_like(model.straight)  # both start at rest on the moving base
+    start_rate = np.zeros_like(model.rest)  # both start at rest on the moving base
     run = large_motion(model, times, forces=forces, base=base, start_rate=start_rate, tolerance=1e-8)
     assert run.tip == pytest.approx(tips[1] + (tips[1] - tips[0]) / 3.0, abs=1e-4)
     assert abs(run.tip[:, 1]).max() > 0.1
@@ -227,10 +266,10 @@ def test_a_pendulum_swings_as_the_chain_of_links_does():
 def test_free_flight_keeps_momentum_and_energy():
     beam = Beam(length=1.0, bending_stiffness=1.0, mass_per_length=1.0, supports=("free", "free"))
     model = NonlinearHermite(beam, 8, axial_stiffness=1e3)
-    s, rate = model.nodes, np.zeros_like(model.straight)
+    s, rate = model.nodes, np.zeros_like(model.rest)
     rate[:, 0] = np.stack([0.3 + 0.0 * s, 2.0 * s - 0.4], axis=1)
     rate[:, 1, 1] = 2.0
-    flight = large_motion(model, [0.0, 0.4, 1.1], start=model.straight, start_rate=rate)
+    flight = large_motion(model, [0.0, 0.4, 1.1], start=model.rest, start_rate=rate)
     x, speeds = np.linspace(0.0, 1.0, 401), []
     for k in (0, 2):
         r, v = (

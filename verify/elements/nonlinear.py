@@ -24,8 +24,9 @@ LARGEST_TURN = 0.5  # largest change of a slope in one Newton step: tangents are
 class NonlinearHermite(PlaneElements):
     """A beam of `count` nonlinear Hermite elements; `axial_stiffness` EA, N, is by default that of its section.
 
-    Supports are those of the beam; the left of two supported ends does not slide along the beam. Raises InputError for
-    attachments, a loss factor, axial force, and an unknown EA.
+    `curvature` of the unloaded beam, 1/m, is a function of arrays of arc length, m; such a beam is a cantilever that
+    starts along x. Supports are those of the beam; the left of two supported ends does not slide along the beam. Raises
+    InputError for attachments, a loss factor, axial force, an unknown EA, and curved beams on other supports.
     """
 
     def bend(
@@ -44,11 +45,11 @@ class NonlinearHermite(PlaneElements):
         Forces and `gravity` (m/s^2) are one number across the beam, or two, along and across; the follower's are those
         of the tip's tangent and normal. The base turns steadily at `rate`, rad/s, `hub_radius` (m) beyond the axis, and
         the loads turn with it.
-        Newton's method in load steps from the straight beam, a quarter as long where it fails and twice as long where
+        Newton's method in load steps from the unloaded beam, a quarter as long where it fails and twice as long where
         it does not; from `start` in one step. Raises InputError where steps of a millionth of the load fail.
         """
         forces = Forces(in_plane("load", load), moment, in_plane("follower", follower), in_plane("gravity", gravity))
-        state, done, part = self.straight if start is None else start.state, 0.0, 1.0
+        state, done, part = self.rest if start is None else start.state, 0.0, 1.0
         while done < 1.0:
             share = min(done + part, 1.0)
             solution = self._newton(state, forces.scaled(share), share * rate**2, hub_radius)
@@ -148,7 +149,7 @@ def dense(bands: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BentElements:
-    """Equilibrium of nonlinear elements in the frame of their base; x along the straight beam, y across it."""
+    """Equilibrium of nonlinear elements in the frame of their base; x along the start of the unloaded beam."""
 
     model: NonlinearHermite
     state: Array
@@ -166,17 +167,18 @@ class BentElements:
     @property
     def deflection(self) -> float:
         """Transverse displacement of the right end, m."""
-        return float(self.state[-1, 0, 1])
+        return float(self.state[-1, 0, 1] - self.model.rest[-1, 0, 1])
 
     @property
     def shortening(self) -> float:
         """Axial displacement of the right end towards the left one, m."""
-        return self.model.beam.length - float(self.state[-1, 0, 0])
+        return float(self.model.rest[-1, 0, 0] - self.state[-1, 0, 0])
 
     @property
     def turn(self) -> float:
         """Rotation of the right end, rad, between -pi and pi."""
-        return float(np.arctan2(self.state[-1, 1, 1], self.state[-1, 1, 0]))
+        (c, s), (x, y) = self.model.rest[-1, 1], self.state[-1, 1]
+        return float(np.arctan2(c * y - s * x, c * x + s * y))
 
     @property
     def energy(self) -> float:

@@ -93,7 +93,7 @@ def large_motion(
     tolerance: float = 1e-7,
     progress: Callable[[float], None] = lambda share: None,
 ) -> NonlinearMotion:
-    """Motion from `start` (default: the straight beam) with rates `start_rate` (default: at rest relative to the base).
+    """Motion from `start` (default: the unloaded beam) with rates `start_rate` (default: at rest relative to the base).
 
     `times` ascend from 0. `forces` are dead loads in the frame of the ground, which may depend on time, s; `drive` are
     harmonic forces across the straight beam, which turn with the base. `tolerance` bounds the error of a step in
@@ -125,7 +125,7 @@ class _Run:
         self.drive, self.omega = drive, omega
         self.mass = model.element_masses
         self.turned = np.einsum("nij,jk->nik", self.mass, np.kron(np.eye(4), QUARTER))
-        self.hub = np.zeros_like(model.straight)
+        self.hub = np.zeros_like(model.rest)
         self.hub[:, 0, 0] = base.hub_radius
 
     def external(self, time: float, state: Array, rate: Array) -> tuple[Array, Array, Array]:
@@ -185,7 +185,7 @@ class _Run:
     ) -> NonlinearMotion:
         """Steps to the last time, interpolated to all."""
         model, end = self.model, float(times[-1])
-        state = model.straight if start is None else start
+        state = model.rest if start is None else start
         now = self.begin(state, np.zeros_like(state) if start_rate is None else start_rate)
         instants, jerk, placed, rejected = [now], np.zeros_like(state), 0.0, 0
         h = self._first_step(now, end)

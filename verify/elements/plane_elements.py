@@ -1,21 +1,22 @@
 """Large in-plane motion of a beam: nonlinear Hermite elements, geometrically exact, by scikit-fem's basis.
 
 Both coordinates r(s) = (x, y) of the line of centroids are cubic Hermite polynomials of the arc length s of the
-straight beam. With the stretch J = |r'| and the curvature kappa = theta' = (r' x r'')/J^2 the energy per length is
+unloaded beam. With the stretch J = |r'| and the curvature kappa = theta' = (r' x r'')/J^2 the energy per length is
 
-    EA (J - 1)^2 / 2 + EI kappa^2 / 2,      rho A |dr/dt|^2 / 2
+    EA (J - J_0)^2 / 2 + EI (kappa - kappa_0)^2 / 2,      rho A |dr/dt|^2 / 2
 
 without shear and rotary inertia (J. C. Simo and L. Vu-Quoc, Comput. Methods Appl. Mech. Engrg. 58 (1986) 79, in that
-limit). Bending is integrated at four points of Gauss. A cubic cannot bend without stretching, which full integration of
-EA resists (membrane locking); two points leave a mechanism of the slopes, that a hundredth of EA would restrain at the
-cost of accuracy: of EA a tenth of EI/l^2 is integrated at the four points, the rest at the two, so that a uniform
-stretch has EA. The mass matrix is constant, and the tangent of the straight beam across its length is the matrix of
-`fem_beam`.
+limit); J_0 and kappa_0 are those of the interpolated shape at rest, 1 and 0 of a straight beam. Bending is integrated
+at four points of Gauss. A cubic cannot bend without stretching, which full integration of EA resists (membrane
+locking); two points leave a mechanism of the slopes, that a hundredth of EA would restrain at the cost of accuracy: of
+EA a tenth of EI/l^2 is integrated at the four points, the rest at the two, so that a uniform stretch has EA. The mass
+matrix is constant, and the tangent of the straight beam across its length is the matrix of `fem_beam`.
 
 The beam moves relative to a base with prescribed motion: unknowns are coordinates in the base's frame, so that a clamp
 fixes y' alone and leaves the stretch x' free; the base acts by inertia forces.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -31,6 +32,7 @@ from verify.problem.supports import FIXED
 from verify.validation import check_integer, check_number
 
 BAND = 7  # an element couples two nodes of four values
+FINE = 16  # parts of an element for splines of the shape at rest: their error, of order 4 too, is 1e-5 of the element's
 RESTRAINT = 0.1  # part of EA at four points, in EI/l^2: its error is far below that of bending
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 """Rotation by 90 degrees."""
@@ -65,6 +67,8 @@ class PlaneElements:
     beam: Beam
     count: int
     axial_stiffness: float | None = None
+    curvature: Callable[[Array], Array] | None = None
+    """Curvature at rest, 1/m, of arc lengths, m, of a cantilever that starts along x: arrays of equal shape."""
     free: Array = field(init=False)
     """(count + 1, 2, 2): 1 where a coordinate or slope of a node may move, else 0."""
 
@@ -75,6 +79,10 @@ class PlaneElements:
             raise InputError(f"beam.loss_factor = {self.beam.loss_factor!r}: nonlinear elements have none, give 0")
         if self.axial_stiffness is not None:
             check_number("axial_stiffness", self.axial_stiffness, "N", above=0)
+        if self.curvature and self.beam.supports != ("clamped", "free"):
+            raise InputError(
+                f"beam.supports = {self.beam.supports!r}: a curved beam is a cantilever, ('clamped', 'free')"
+            )
         free = np.ones((self.count + 1, 2, 2))
         for node, support in zip((0, -1), self.beam.supports, strict=True):
             free[node, :, 1] = [not fixed for fixed in FIXED[support]]
@@ -97,11 +105,31 @@ class PlaneElements:
         return self.parts.nodes * self.parts.unit
 
     @cached_property
-    def straight(self) -> Array:
-        """State of the straight beam: (count + 1, 2, 2), of a node r = (x, y) in m, then r'."""
+    def rest(self) -> Array:
+        """State of the unloaded beam: (count + 1, 2, 2), of a node r = (x, y) in m, then r'. Raises InputError."""
         state = np.zeros((self.count + 1, 2, 2))
         state[:, 0, 0], state[:, 1, 0] = self.nodes, 1.0
+        if self.curvature is None:
+            return state
+        from scipy.interpolate import CubicSpline
+
+        fine = np.interp(np.arange(FINE * self.count + 1) / FINE, np.arange(self.count + 1), self.nodes)
+        bent = np.asarray(self.curvature(fine), dtype=float)
+        if bent.shape != fine.shape or not np.isfinite(bent).all():
+            raise InputError(
+                "curvature: give a function of an array of arc lengths, m, that returns as many finite 1/m"
+            )
+        angles = CubicSpline(fine, bent).antiderivative()(fine)
+        tangents = np.stack([np.cos(angles), np.sin(angles)], -1)
+        state[:, 0], state[:, 1] = CubicSpline(fine, tangents).antiderivative()(self.nodes), tangents[::FINE]
         return state
+
+    @cached_property
+    def _at_rest(self) -> tuple[Array, Array]:
+        """Stretch and curvature of the unloaded elements at six points, (n, 6) each, or those of a straight beam."""
+        if self.curvature is None:
+            return np.ones((1, 1)), np.zeros((1, 1))
+        return self._strains(self.rest)
 
     @cached_property
     def _shapes(self) -> tuple[Array, Array, Array]:
@@ -192,12 +220,16 @@ class PlaneElements:
 
     def energy(self, states: Array) -> Array:
         """Strain energy, (...), J, of states (..., count + 1, 2, 2)."""
-        rows, axial, bending = self._shapes
+        _, axial, bending = self._shapes
+        (stretch, kappa), (length, bent) = self._strains(states), self._at_rest
+        return np.asarray(0.5 * (axial * (stretch - length) ** 2 + bending * (kappa - bent) ** 2).sum((-2, -1)))
+
+    def _strains(self, states: Array) -> tuple[Array, Array]:
+        """Stretch and curvature at the points of states (..., count + 1, 2, 2), (..., n, 6) each."""
         values = states.reshape(*states.shape[:-3], -1)[..., self._places[0]]
-        a, b = np.split(np.einsum("nqij,...nj->...nqi", rows, values), 2, axis=-1)
+        a, b = np.split(np.einsum("nqij,...nj->...nqi", self._shapes[0], values), 2, axis=-1)
         stretch2 = (a * a).sum(-1)
-        kappa = (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / stretch2
-        return np.asarray(0.5 * (axial * (np.sqrt(stretch2) - 1.0) ** 2 + bending * kappa**2).sum((-2, -1)))
+        return np.sqrt(stretch2), (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / stretch2
 
     def elastic(self, state: Array) -> tuple[Array, Array]:
         """Derivatives of the energy by the values of each element: first (n, 8), second (n, 8, 8).
@@ -205,7 +237,7 @@ class PlaneElements:
         With a = r', b = r'', p = -b turned by 90 degrees: kappa = a x b / J^2 has the derivatives p/J^2 - 2 kappa a/J^2
         by a and (a turned by 90 degrees)/J^2 by b.
         """
-        rows, axial, bending = self._shapes
+        (rows, axial, bending), (length, bent) = self._shapes, self._at_rest
         both = (rows.reshape(self.count, -1, 8) @ self.of_elements(state)[..., None]).reshape(*axial.shape, 4)
         a, b = both[..., :2], both[..., 2:]
         stretch2 = (a * a).sum(-1)[..., None]
@@ -213,19 +245,19 @@ class PlaneElements:
         tangent, turned, p = a / stretch, a @ QUARTER.T, -b @ QUARTER.T
         kappa = (turned * b).sum(-1)[..., None] / stretch2
         by_a, by_b = (p - 2.0 * kappa * a) / stretch2, turned / stretch2
-        strain = stretch - 1.0
+        strain = stretch - length[..., None]
         ea, ei = axial[..., None], bending[..., None]
-        moment = ei * kappa
+        moment = ei * (kappa - bent[..., None])
         gradient = np.concatenate([ea * strain * tangent + moment * by_a, moment * by_b], axis=-1)
 
         square, mixed = outer(tangent, tangent), outer(p, a)
-        ea, ei, moment, stretch, stretch2, kappa = (
-            array[..., None] for array in (ea, ei, moment, stretch, stretch2, kappa)
+        ea, ei, moment, stretch, stretch2, kappa, strain = (
+            array[..., None] for array in (ea, ei, moment, stretch, stretch2, kappa, strain)
         )
         second = (8.0 * kappa * square - 2.0 * kappa * UNIT) / stretch2
         second -= 2.0 * (mixed + mixed.swapaxes(-1, -2)) / stretch2**2
         hessian = np.empty((*axial.shape, 4, 4))
-        hessian[..., :2, :2] = ea * (square + (1.0 - 1.0 / stretch) * (UNIT - square)) + (
+        hessian[..., :2, :2] = ea * (square + strain / stretch * (UNIT - square)) + (
             ei * outer(by_a, by_a) + moment * second
         )
         mixed = -QUARTER / stretch2 - 2.0 * outer(a, turned) / stretch2**2

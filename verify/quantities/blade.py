@@ -116,7 +116,7 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     from verify.elements.plane_elements import Forces
 
     model, weight = elements(beam, count, path.axial_stiffness), Forces(gravity=np.array(base.gravity))
-    rate, start = base.motion.rotation(0.0)[1], model.straight
+    rate, start = base.motion.rotation(0.0)[1], model.rest
     if rate and beam.supports[0] == "clamped":  # else the beam rings along its length
         start = model.bend(rate=rate, hub_radius=base.hub_radius).state
     run = large_motion(model, times, forces=weight, base=base.motion, start=start, tolerance=path.tolerance)
