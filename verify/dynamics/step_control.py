@@ -74,23 +74,6 @@ def point_step(stages: Sequence[Stage], z: ComplexArray, length: float, longest:
     return longest
 
 
-def feet_step(longest: float, contact: float, fastest: float, step: float | None) -> float:
-    """Step of sliders on springs, s: `step`, or for None one that resolves contact and highest mode.
-
-    Raises InputError for an unstable step.
-    """
-    if step is None:
-        return min(longest, CONTACT_RADIANS / contact if contact else inf, MODE_RADIANS / fastest if fastest else inf)
-    if contact * step >= UNSTABLE:
-        raise InputError(f"step = {step!r} s is unstable: give at most {CONTACT_RADIANS / contact:.3g} s")
-    return step
-
-
-def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage]:
-    """All stages in steps no longer than `step`, with `closer` times as many samples."""
-    return [stage.stepped(step, closer) for stage in stages]
-
-
 def change(coarse: Motion, fine: Motion) -> float:
     """Relative change of the displacements with the step: larger of that at the end and over all samples.
 

@@ -101,13 +101,18 @@ def run_stages(
     `places`, (p,), m; `accounts`: integrate the work of the drive and the loss of the modes; `progress` is called with
     the number of completed steps.
     """
-    samples = sum(stage.steps.n // stage.steps.every for stage in stages)
-    run = Run(assembly, samples, len(places) + stages[0].readings.shape[1])
+    samples, first = sum(stage.steps.n // stage.steps.every for stage in stages), stages[0]
+    run = Run(assembly, samples, len(places) + first.readings.shape[1])
+    deflection = first.deflection(z, np.zeros(1), places)
+    before = first.rows.energies(first.whole(z, 0.0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.free(z)
         z = stage.whole(run.stage(stage, z, places, accounts, progress), float(run.step * stage.steps.dt))
         if run.stopped != "end":
             break
+    after = first.rows.energies(z)
+    run.gains, run.accounts = (after[0] - before[0], after[1] - before[1], sum(before)), accounts and not run.left
+    run.journal.deflections[0] = deflection
     return run.recorded(z, stage)
 
 
@@ -139,6 +144,9 @@ class Run:
         self.stopped, self.left, self.end, self.z = "end", False, 0.0, np.empty(0, dtype=complex)
         """"end", a message of `Stage.beyond`, "diverged" or "chatters"; whether a moving load has left the beam; end
         time, s; total state of the rows then."""
+        self.gains, self.accounts = (0.0, 0.0, 0.0), False
+        """Gains of kinetic and elastic energy of the beam, and its initial energy, J; whether the work of the drive
+        and the loss in the beam are computed."""
 
     @property
     def step(self) -> int:
@@ -146,14 +154,9 @@ class Run:
         return int(self.journal.progress["step"][0])
 
     @property
-    def balance(self) -> dict[str, float]:
-        """The record BALANCE."""
-        return of_all(self.journal.balance)
-
-    @property
     def events(self) -> Array:
         """(n, 4), those that were recorded."""
-        return self.journal.events[: min(self.n_events, EVENTS)]
+        return self.journal.events[: self.n_events]
 
     @property
     def n_events(self) -> int:
@@ -172,9 +175,8 @@ class Run:
             depth = np.maximum(c["depth"] + 0.5 * dt * p["face"] * (c["vz"] - rise), 0.0)
             np.add.at(self.journal.sums["stored"], p["slider"], 0.5 * p["stiffness"] * depth**2)
         n, j = int(self.journal.progress["samples"][0]), self.journal
-        self.journal = j._replace(
-            samples=j.samples[:n], heights=j.heights[:n], pressures=j.pressures[:n], deflections=j.deflections[:n]
-        )
+        ended = {name: getattr(j, name)[:n] for name in ("samples", "heights", "pressures", "deflections")}
+        self.journal = j._replace(**ended)
         self.z, self.end = z, stage.origin + self.step * dt
         return self
 
@@ -221,21 +223,22 @@ class Run:
         from verify.dynamics.impact import Ground, advance_impacts
         from verify.dynamics.integrator import advance
 
-        steps, kind, bodies, before, reason = stage.steps, self.assembly.kind, self.assembly.bodies, self.n_steps, DONE
-        hard, begun = self.assembly.restitution, self.step
+        steps, kind, bodies, hard, reason = stage.steps, self.assembly.kind, self.assembly.bodies, None, DONE
+        given = steps.dt, kind, beam, bodies, response, accounts, self.journal
+        if (hard := self.assembly.restitution) is not None:
+            ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
         if not self.journal.progress["samples"][0]:
             if hard is None:
-                advance(0, 1, steps.dt, kind, beam, bodies, response, accounts, self.journal)
+                advance(0, 1, *given)
             self.sample_first()
         while reason == DONE and self.step < steps.n:
-            began, n = thread_time(), min(CHUNK, steps.n - self.step)
+            began, begun, n = thread_time(), self.step, min(CHUNK, steps.n - self.step)
             if hard is None:
-                reason = advance(n, steps.every, steps.dt, kind, beam, bodies, response, accounts, self.journal)
+                reason = advance(n, steps.every, *given)
             else:
-                ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
                 reason = advance_impacts(n, steps.every, steps.dt, hard, kind, ground, bodies, self.journal)
             self.loop_s += thread_time() - began
-            self.n_steps = before + self.step - begun
+            self.n_steps += self.step - begun
             progress(self.n_steps)
         return int(reason)
 
@@ -286,8 +289,7 @@ class Run:
 
 def of_all(records: Records) -> dict[str, float]:
     """Sums of the fields of records of floats, by name."""
-    values = records.view(np.float64).reshape(len(records), -1).sum(axis=0)
-    return dict(zip(records.dtype.names or (), values.tolist(), strict=True))
+    return {name: float(records[name].sum()) for name in records.dtype.names or ()}
 
 
 def response_of(assembly: Assembly, columns: int) -> Response | None:
