@@ -27,17 +27,13 @@ SERIES = 12
 class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Complex modal rows: z' = lambda z + c psi(x) f, with the contribution Re(psi(x) z) to the deflection."""
 
-    rates: ComplexArray
-    """lambda, (n,), 1/s; of a mode -sigma + i omega_d."""
-    participations: ComplexArray
-    """c, (n,), s/kg of unit modal mass; of a mode -i / omega_d."""
-    loads: ComplexArray
-    """psi at the forces times their phasors, (n,), N/sqrt(kg)."""
+    rates: ComplexArray  # lambda, (n,), 1/s; of a mode -sigma + i omega_d
+    participations: ComplexArray  # c, (n,), s/kg of unit modal mass; of a mode -i / omega_d
+    loads: ComplexArray  # psi at the forces times their phasors, (n,), N/sqrt(kg)
 
     backward_loads: ComplexArray | None = None
     """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg); None for real psi."""
-    readings: ComplexArray = np.empty((0, 0), dtype=complex)
-    """psi of outputs other than the deflection, (n, outputs)."""
+    readings: ComplexArray = np.empty((0, 0), dtype=complex)  # psi of outputs other than the deflection, (n, outputs)
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -74,14 +70,12 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The forced part z = sum_d (t/T)^d (A_d e^{i omega s} + conj(B_d) e^{-i omega s}) of all rows, s = t + origin."""
 
-    forward: ComplexArray
-    """A, (n, degree + 1)."""
+    forward: ComplexArray  # A, (n, degree + 1)
     backward: ComplexArray
     """B, (n, degree + 1): conjugated, so that the deflection is Re((psi A + conj(psi) B) (t/T)^d e^{i omega s})."""
     omega: float
     origin: float
-    unit_s: float
-    """T."""
+    unit_s: float  # T
 
     def at(self, t: float) -> ComplexArray:
         """The state z of every row at time t, (n,)."""

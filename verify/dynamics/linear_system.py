@@ -28,8 +28,7 @@ class Steps(msgspec.Struct, frozen=True):
 
     n: int
     dt: float
-    every: int
-    """Steps from sample to sample."""
+    every: int  # Steps from sample to sample
 
     @property
     def duration(self) -> float:
@@ -54,28 +53,21 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """An interval with one polynomial envelope of the forces; its time t starts at 0."""
 
     rows: Rows = NO_ROWS
-    forced: Forced | None = None
-    """None where the drive's rows are a steady field."""
+    forced: Forced | None = None  # None where the drive's rows are a steady field
     shapes: Callable[[Array, int], Any] = lambda x, derivative: np.empty((0, len(x)))
     """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 without free modes."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
-    edges: Array
-    """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
+    edges: Array  # (pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`
     degree: int
     omega: float
-    origin: float = 0.0
-    """Start time of the stage, s."""
+    origin: float = 0.0  # Start time of the stage, s
     unit_s: float = 1.0
-    envelope: Array = CONSTANT
-    """Amplitude of the forces as a polynomial in t / unit_s."""
+    envelope: Array = CONSTANT  # Amplitude of the forces as a polynomial in t / unit_s
     steps: Steps
-    complex_rows: int = 0
-    """Number of rows with complex psi, which are the last ones."""
-    readings: ComplexArray = NO_READINGS
-    """(powers of t, outputs): shapes of the drive for the outputs `rows.readings`."""
-    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
-    """Messages for a slider beyond the first edge, and beyond the last."""
+    complex_rows: int = 0  # Number of rows with complex psi, which are the last ones
+    readings: ComplexArray = NO_READINGS  # (powers of t, outputs): shapes of the drive for the outputs `rows.readings`
+    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)  # Messages for a slider beyond the first edge, and beyond the last
 
     @property
     def duration(self) -> float:

@@ -50,18 +50,15 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     count: int | None
     modes: int | None
     start: str
-    modal_damping: float | None
-    """Damping ratio of every mode; None: by the beam's loss factor."""
+    modal_damping: float | None  # Damping ratio of every mode; None: by the beam's loss factor
     prescribed: tuple[PrescribedSlider, ...]
-    starts: tuple[float, ...]
-    """Initial positions of the sliders, m; in a continued run those of the first run."""
+    starts: tuple[float, ...]  # Initial positions of the sliders, m; in a continued run those of the first run
     points: Array
     pieces: tuple[Growth, ...]
     step: float | None
     before: EndState | None
     circuits: tuple[Mounted, ...]
-    sequence: bool
-    """Whether results have an axis of sliders."""
+    sequence: bool  # Whether results have an axis of sliders
 
     @property
     def sliders(self) -> tuple[Slider, ...]:

@@ -40,11 +40,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Sliders on a beam before the first step."""
 
     request: Request
-    basis: TimeBasis | None
-    """None without free modes."""
+    basis: TimeBasis | None  # None without free modes
     stages: list[Stage]
-    assembly: Assembly
-    """Sliders without transverse motion, feet at height 0; a run advances a copy."""
+    assembly: Assembly  # Sliders without transverse motion, feet at height 0; a run advances a copy
     coupling: validity.Coupling
     margins: validity.Margins
     notes: tuple[str, ...]

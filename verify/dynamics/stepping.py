@@ -51,8 +51,7 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
     kind: Kind
     moving_load: bool = False
     """Prescribed speed without friction: the run continues without contact after a point has left the beam."""
-    at_rest: bool = False
-    """Whether the state is an equilibrium, with depths of the middle of the first step."""
+    at_rest: bool = False  # Whether the state is an equilibrium, with depths of the middle of the first step
     restitution: float | None = None
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
 
