@@ -9,22 +9,8 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.contact.state import SPRING, Bodies, Kind, Records, Response
+from verify.dynamics import state
 from verify.dynamics.linear_system import Stage
-from verify.dynamics.state import (
-    BALANCE,
-    CHATTERS,
-    DONE,
-    NOT_FINITE,
-    PROGRESS,
-    SAMPLE,
-    SUMS,
-    Accounts,
-    Beam,
-    Harmonic,
-    Journal,
-    Rows,
-    Surface,
-)
 
 CHUNK = 20_000
 """Number of steps between checks for an interrupt."""
@@ -124,17 +110,17 @@ class Run:
         if feet:
             owners[assembly.points["foot"]] = assembly.points["slider"]
         self.assembly = assembly
-        self.journal = Journal(
-            progress=np.zeros(1, PROGRESS),
-            samples=np.zeros((samples + 1, sliders), SAMPLE),
+        self.journal = state.Journal(
+            progress=np.zeros(1, state.PROGRESS),
+            samples=np.zeros((samples + 1, sliders), state.SAMPLE),
             heights=np.zeros((samples + 1, feet, 2)),
             pressures=np.zeros((samples + 1, points)),
             deflections=np.zeros((samples + 1, outputs)),
             places=np.zeros((0, 0)),
             events=np.zeros((EVENTS, 4)),
-            sums=np.zeros(sliders, SUMS),
-            sums_before=np.zeros(sliders, SUMS),
-            balance=np.zeros(1, BALANCE),
+            sums=np.zeros(sliders, state.SUMS),
+            sums_before=np.zeros(sliders, state.SUMS),
+            balance=np.zeros(1, state.BALANCE),
             slider_of_foot=owners,
         )
         self.n_steps, self.seconds, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, 0.0, REACH
@@ -187,26 +173,26 @@ class Run:
         if accounts and stage.forced is not None:
             forced, loads = stage.rows.accounts(stage.forced)
             growth = np.array(stage.envelope, dtype=float)
-        kept = Accounts(accounts, forced, loads, growth, np.zeros(loads.shape[1]))
+        kept = state.Accounts(accounts, forced, loads, growth, np.zeros(loads.shape[1]))
         if self.journal.deflections.shape[1]:
             self.journal = self.journal._replace(places=np.ascontiguousarray(stage.outputs(places).T))
         response = response_of(self.assembly, n + stage.complex_rows)
-        drive, factors = Harmonic(stage.omega, stage.origin, stage.unit_s), np.zeros((4, 2, columns))
-        first, reason = self._around(stage), DONE
-        while first is not None and self.step < stage.steps.n and reason not in (NOT_FINITE, CHATTERS):
+        drive, factors = state.Harmonic(stage.omega, stage.origin, stage.unit_s), np.zeros((4, 2, columns))
+        first, reason = self._around(stage), state.DONE
+        while first is not None and self.step < stage.steps.n and reason not in (state.NOT_FINITE, state.CHATTERS):
             table, edges = stage.table(*first), stage.edges[first[0] : first[1] + 1] - self.assembly.start
             marks = np.full(len(table), -1, dtype=np.int64)
-            surface = Surface(table, edges, factors, np.zeros((len(table), 2, stage.degree + 1)), marks)
+            surface = state.Surface(table, edges, factors, np.zeros((len(table), 2, stage.degree + 1)), marks)
             self.assembly.contacts["piece"] = np.searchsorted(edges[1:-1], self.positions())
             self.set_up_s += thread_time() - began
-            beam = Beam(rows, stage.complex_rows, drive, surface)
+            beam = state.Beam(rows, stage.complex_rows, drive, surface)
             reason = self._march(stage, beam, response, kept, progress)
             if self.step < stage.steps.n:
                 began, last, self.reach = thread_time(), first, min(2 * self.reach, FARTHEST)
                 first = None if (around := self._around(stage)) == last else around
         self.z, self.seconds = rows.z_re + 1j * rows.z_im, self.seconds + self.step * stage.steps.dt
-        if reason in (NOT_FINITE, CHATTERS):
-            self.stopped = "diverged" if reason == NOT_FINITE else "chatters"
+        if reason in (state.NOT_FINITE, state.CHATTERS):
+            self.stopped = "diverged" if reason == state.NOT_FINITE else "chatters"
         elif self.step < stage.steps.n:
             if self.assembly.moving_load:
                 self._go_on(stage, places)
@@ -216,21 +202,20 @@ class Run:
         return self.z
 
     def _march(
-        self, stage: Stage, beam: Beam, response: Response | None, accounts: Accounts, progress: Progress
+        self, stage: Stage, beam: state.Beam, response: Response | None, accounts: state.Accounts, progress: Progress
     ) -> int:
         """Chunks of steps on one table; why they end."""
         from verify.dynamics.impact import Ground, advance_impacts
         from verify.dynamics.integrator import advance
 
-        steps, kind, bodies, hard, reason = stage.steps, self.assembly.kind, self.assembly.bodies, None, DONE
+        steps, kind, bodies, reason = stage.steps, self.assembly.kind, self.assembly.bodies, state.DONE
+        hard, ground = self.assembly.restitution, Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
         given = steps.dt, kind, beam, bodies, response, accounts, self.journal
-        if (hard := self.assembly.restitution) is not None:
-            ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
         if not self.journal.progress["samples"][0]:
             if hard is None:
                 advance(0, 1, *given)
             self.sample_first()
-        while reason == DONE and self.step < steps.n:
+        while reason == state.DONE and self.step < steps.n:
             began, begun, n = thread_time(), self.step, min(CHUNK, steps.n - self.step)
             if hard is None:
                 reason = advance(n, steps.every, *given)
@@ -299,7 +284,7 @@ def response_of(assembly: Assembly, columns: int) -> Response | None:
     return Response(np.zeros((4, n, columns)), np.zeros(columns), np.zeros((2, n, n)), np.zeros((n, n + 1)))
 
 
-def rows_of(stage: Stage, z: ComplexArray) -> Rows:
+def rows_of(stage: Stage, z: ComplexArray) -> state.Rows:
     """The rows of a stage in state z, as the kernels advance them."""
     rate, dt = stage.rows.rates, stage.steps.dt
     grown = np.expm1(rate * dt)
@@ -307,4 +292,4 @@ def rows_of(stage: Stage, z: ComplexArray) -> Rows:
     coarse = abs(rate) * dt > RESOLVED
     end = np.where(coarse, gain / dt, stage.rows.participations * grown)
     pairs = (part for value in (z, rate, np.exp(0.5 * rate * dt), gain, end) for part in (value.real, value.imag))
-    return Rows(*np.array([*pairs, coarse]))  # in the order of `Rows`
+    return state.Rows(*np.array([*pairs, coarse]))  # in the order of `Rows`
