@@ -51,48 +51,26 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def of(cls, request: Request, basis: TimeBasis | None, stages: list[Stage], notes: tuple[str, ...]) -> "SliderRun":
         """A run with time steps that resolve motion and contact. Raises InputError."""
         stages = [stage.within(contact_range(request.beam, request.starts[0])) for stage in stages]
-        run = cls(
+        assembly, free = assemble(request.beam, request.prescribed, request.starts), basis if request.two_way else None
+        coupling, margins = validity.coupling_of(request, basis, stages[-1]), validity.margins_of(request, stages[-1])
+        if request.feet:
+            rate = contact_rate(assembly, request.sliders, free)
+            stages = step_control.feet_stages(request, stages, rate, float(free.omegas.max()) if free else 0.0)
+            slips, phase = validity.presliding(request), rate * stages[-1].steps.dt
+            margins = replace(margins, presliding=slips, contact_step=phase)
+        else:
+            stages, more = step_control.point_stages(request, stages)
+            notes += more
+        check_steps(sum(stage.duration for stage in stages), stages[-1].steps.dt)
+        return cls(
             request=request,
             basis=basis,
             stages=stages,
-            assembly=assemble(request.beam, request.prescribed, request.starts),
-            coupling=validity.coupling_of(request, basis, stages[-1]),
-            margins=validity.margins_of(request, stages[-1]),
+            assembly=assembly,
+            coupling=coupling,
+            margins=margins,
             notes=notes,
         )
-        run = run._with_feet_steps() if request.feet else run._with_point_steps()
-        check_steps(sum(stage.duration for stage in run.stages), run.stages[-1].steps.dt)
-        return run
-
-    def _with_feet_steps(self) -> "SliderRun":
-        request, basis, stages = self.request, self.basis if self.request.two_way else None, self.stages
-        rate, step = contact_rate(self.assembly, request.sliders, basis), request.step
-        if step is None:
-            fastest = float(basis.omegas.max()) if basis else 0.0
-            limits = (step_control.CONTACT_RADIANS, rate), (step_control.MODE_RADIANS, fastest)
-            step = min([stages[0].steps.dt, *(radians / omega for radians, omega in limits if omega)])
-        elif rate * step >= step_control.UNSTABLE:
-            most = step_control.CONTACT_RADIANS / rate
-            raise InputError(f"step = {step!r} s is unstable: give at most {most:.3g} s")
-        stages = [stage.stepped(step) for stage in stages]
-        slips, phase = validity.presliding(request), rate * stages[-1].steps.dt
-        return replace(self, stages=stages, margins=replace(self.margins, presliding=slips, contact_step=phase))
-
-    def _with_point_steps(self) -> "SliderRun":
-        request, stages, length, rate = self.request, self.stages, self.request.beam.length, 0.0
-        z, longest = request.released(stages[0]), max(stage.steps.dt for stage in stages)
-        if request.step is not None:
-            share = step_control.unresolved(stages, z, length, longest)
-            enough = step_control.point_step(stages, z, length, longest, 0.0)
-            note = f"step: {100 * share:.2g} % of the surface speed is not resolved, give at most {enough:.2g} s"
-            return replace(self, notes=(*self.notes, *(note,) * (enough < longest)))
-        if request.two_way:
-            rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
-            rate = max(rates, default=0.0)
-            if request.sliders[0].normal == "bilateral":
-                longest *= 0.5  # the contact excites waves
-        step = step_control.point_step(stages, z, length, longest, rate)
-        return replace(self, stages=[stage.stepped(step) for stage in stages])
 
     def _initial(self) -> tuple[Assembly, ComplexArray]:
         """Sliders in equilibrium or in the state of an earlier run, and free rows, (n,). Raises InputError."""
@@ -129,7 +107,7 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """
         request, stages, (assembly, z) = self.request, self.stages, self._initial()
         if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
-            return self._checked(self.run(stages, assembly, z, progress))
+            return step_control.checked(self.run(stages, assembly, z, progress), request, stages)
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
         rough = [stage.stepped(2.0 * dt, closer) for stage in stages]
@@ -146,19 +124,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         )
         kept: dict[str, Any] = {name: getattr(fine, name)[::closer] for name in SAMPLED}
         notes = (*fine.notes, *(note,) * (moved > step_control.CONVERGED))
-        return self._checked(replace(fine, statistics=statistics, notes=notes, **kept))
-
-    def _checked(self, motion: Motion) -> Motion:
-        """A motion with notes on its steps. Raises InputError for a residual of the energy above its tolerance."""
-        statistics, request, stages, resolved = motion.statistics, self.request, self.stages, True
-        if request.step is not None:
-            z, length = request.released(stages[0]), request.beam.length
-            share = step_control.unresolved(stages, z, length, statistics.step_s)
-            resolved = share <= step_control.UNRESOLVED
-        notes = step_control.check_energy(motion, request.frequency_hz, request.feet, resolved)
-        if statistics.unconverged:
-            notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
-        return replace(motion, notes=(*motion.notes, *notes))
+        motion = replace(fine, statistics=statistics, notes=notes, **kept)
+        return step_control.checked(motion, request, stages)
 
     def run(self, stages: list[Stage], assembly: Assembly, z: ComplexArray, progress: Progress) -> Motion:
         """One run through these stages from an initial state of the assembly, which is advanced, and of free rows."""
