@@ -20,10 +20,11 @@ from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
 from verify.dynamics.arguments import Excitation, Keep, Sliders, Step
 from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equilibrium, set_down
-from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
+from verify.dynamics.linear_system import Stage, Steps, basis_of
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import Motion
 from verify.dynamics.slider_run import Progress, SliderRun
+from verify.dynamics.stages import stages_from_rest
 from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
 from verify.dynamics.stepping import Assembly, Run, response_of
 from verify.errors import InputError, shown
@@ -74,7 +75,7 @@ def slide_on_chain(
         beam, count, request.forces, request.frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
     )
     basis = basis_of(beam, "segment", count, None, "spline")
-    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
+    stages = stages_from_rest(request, basis, 0.0)
     notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
     run = ChainRun.of(request, basis, stages, notes)
     up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it

@@ -71,6 +71,11 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return 2.0 * np.pi * self.frequency_hz
 
     @property
+    def origin(self) -> float:
+        """Start time of the run, s: the end of the earlier one."""
+        return self.before.time if self.before else 0.0
+
+    @property
     def feet(self) -> bool:
         """Whether the sliders have unilateral contact."""
         return bool(self.sliders) and self.sliders[0].contact is not None

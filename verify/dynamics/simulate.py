@@ -8,14 +8,13 @@ from msgspec.structs import replace
 
 from verify.blas import one_blas_thread
 from verify.dynamics.arguments import Excitation, Keep, Sliders, Step
-from verify.dynamics.excitation import check_no_resonance
 from verify.dynamics.free_vibration import FreeVibration
-from verify.dynamics.linear_system import Stage, basis_of, stages_from_rest, steady_beam, steady_stage
+from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import END, Motion, Statistics
 from verify.dynamics.slider_run import SliderRun
+from verify.dynamics.stages import beam_in_time
 from verify.dynamics.validity import margins_of
-from verify.linear.time_basis import TimeBasis
 from verify.problem.beam import Beam
 from verify.settings import Start
 
@@ -77,31 +76,13 @@ def simulate(
         step=step,
         keep=keep,
     )
-    basis, stages = _beam_in_time(request)
+    basis, stages = beam_in_time(request)
     if request.sliders:
         motion = SliderRun.of(request, basis, stages, request.notes(basis)).converged(progress)
     else:
         motion = _closed_form(request, stages, request.notes(basis))
     statistics = motion.statistics
     return replace(motion, statistics=replace(statistics, set_up_s=perf_counter() - began - statistics.wall_s))
-
-
-def _beam_in_time(request: Request) -> tuple[TimeBasis | None, list[Stage]]:
-    """Free modes, None if none respond, and stages of a run. Raises InputError, also for a resonance."""
-    basis, origin, beam = None, request.before.time if request.before else 0.0, request.beam
-    if request.start == "rest" or request.two_way:
-        line = request.sliders[0].line if request.sliders else "spline"
-        ports = [load for one in request.circuits for load in one.loads(beam)]
-        basis = basis_of(beam, request.model, request.count, request.modes, line, [*request.forces, *ports])
-    damping = request.damping_in(basis)
-    if basis is None or request.start == "steady":
-        case = request.model, request.count, beam, request.forces, request.frequency_hz
-        state = steady_beam(*case, request.modal_damping, request.circuits)
-        return basis, [steady_stage(state, request.pieces[-1].steps, origin, basis, damping, request.circuits)]
-    if not request.circuits:
-        check_no_resonance(basis, request.frequency_hz, damping)
-    growth = request.forces, request.omega, damping, request.pieces, origin, request.circuits
-    return basis, stages_from_rest(basis, *growth)
 
 
 def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) -> Motion:
