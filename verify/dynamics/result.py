@@ -5,7 +5,6 @@ from msgspec import Struct
 
 from verify.arrays import Array
 from verify.contact.state import Records
-from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
 from verify.formatting import one_line
 from verify.problem.beam import Beam
@@ -72,6 +71,36 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
     def contact_imbalance(self) -> float:
         """Magnitude of the residual over the normal and tangential work of the surface."""
         return abs(self.residual) / (abs(self.normal_work) + abs(self.tangential_work))
+
+
+class Coupling(Struct, frozen=True, kw_only=True):
+    """Whether sliders and beam are coupled two-way, and the relative error of one-way coupling."""
+
+    two_way: bool
+    friction_size: float | None
+    """Surface speed due to friction mu N over that due to the drive; None without surface motion by the drive."""
+    normal_size: float
+    """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
+    m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
+
+
+class Margins(Struct, frozen=True, kw_only=True):
+    """Validity of a run; each margin is small where its assumption holds."""
+
+    lift_off: float
+    """Largest downward acceleration of the surface over N / m: a free slider lifts off above 1.
+
+    Under a point slider in the run; else the largest along the beam in the steady state."""
+    nonlinearity: float
+    """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain.
+
+    Mean over links and time. A scale, not a bound: the paper's beam at 4276 Hz departs by 0.6 of it at mid-span in the
+    first millisecond from rest."""
+    presliding: float | None = None
+    """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
+    surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
+    contact_step: float = 0.0
+    """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
 
 
 class ContactState(Struct, frozen=True, eq=False):

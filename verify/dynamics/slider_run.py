@@ -16,7 +16,7 @@ from verify.dynamics.contact_assembly import assemble, contact_rate
 from verify.dynamics.initial_state import set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
-from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
+from verify.dynamics.result import END, ContactState, Coupling, EnergyBalance, Margins, Motion, Statistics
 from verify.dynamics.state import SAMPLE
 from verify.dynamics.stepping import Assembly, Run, of_all, run_stages
 from verify.errors import InputError
@@ -43,8 +43,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     basis: TimeBasis | None  # None without free modes
     stages: list[Stage]
     assembly: Assembly  # Sliders without transverse motion, feet at height 0; a run advances a copy
-    coupling: validity.Coupling
-    margins: validity.Margins
+    coupling: Coupling
+    margins: Margins
     notes: tuple[str, ...]
 
     @classmethod

@@ -2,20 +2,17 @@
 
 from functools import lru_cache
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.linear_system import Stage, steady_beam
+from verify.dynamics.request import Request
+from verify.dynamics.result import Coupling, Margins
 from verify.linear.field import lossless_wavenumber, travelling_wavenumber
 from verify.linear.surface import section_at
 from verify.linear.time_basis import TimeBasis
 from verify.problem.beam import Beam, PointForce
-
-if TYPE_CHECKING:
-    from verify.dynamics.request import Request
 
 NEAR = 1e-3
 """Spacing of the forces that represent a couple, over the smaller of 1/k and L/50: it misses (k d)^2/24 = 4e-8."""
@@ -23,37 +20,7 @@ Receptances = tuple[ComplexArray, ComplexArray]
 """Deflections of places under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
 
 
-class Coupling(Struct, frozen=True, kw_only=True):
-    """Whether sliders and beam are coupled two-way, and the relative error of one-way coupling."""
-
-    two_way: bool
-    friction_size: float | None
-    """Surface speed due to friction mu N over that due to the drive; None without surface motion by the drive."""
-    normal_size: float
-    """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
-    m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
-
-
-class Margins(Struct, frozen=True, kw_only=True):
-    """Validity of a run; each margin is small where its assumption holds."""
-
-    lift_off: float
-    """Largest downward acceleration of the surface over N / m: a free slider lifts off above 1.
-
-    Under a point slider in the run; else the largest along the beam in the steady state."""
-    nonlinearity: float
-    """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain.
-
-    Mean over links and time. A scale, not a bound: the paper's beam at 4276 Hz departs by 0.6 of it at mid-span in the
-    first millisecond from rest."""
-    presliding: float | None = None
-    """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
-    surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
-    contact_step: float = 0.0
-    """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
-
-
-def coupling_of(request: "Request", basis: TimeBasis | None, stage: Stage) -> Coupling:
+def coupling_of(request: Request, basis: TimeBasis | None, stage: Stage) -> Coupling:
     """Largest sizes over the sliders of a run with last stage `stage`, with the loads of all sliders.
 
     Friction mu N exerts a couple (h/2) mu N on the beam, which rotates the section and thereby moves the surface.
@@ -80,7 +47,7 @@ def coupling_of(request: "Request", basis: TimeBasis | None, stage: Stage) -> Co
     )
 
 
-def modal_receptances(basis: TimeBasis, request: "Request", places: Array) -> Receptances:
+def modal_receptances(basis: TimeBasis, request: Request, places: Array) -> Receptances:
     """Receptances by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
     omega, hertz, damping = request.omega, request.frequency_hz, request.damping_in(basis)
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
@@ -91,7 +58,7 @@ def modal_receptances(basis: TimeBasis, request: "Request", places: Array) -> Re
     return risen, turned
 
 
-def field_receptances(request: "Request", places: Array) -> Receptances:
+def field_receptances(request: Request, places: Array) -> Receptances:
     """Receptances by steady fields of the model. Raises InputError."""
     beam, hertz, risen, turned = request.beam, request.frequency_hz, [], []
     for x in places.tolist():
@@ -118,7 +85,7 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
 
-def margins_of(request: "Request", stage: Stage) -> Margins:
+def margins_of(request: Request, stage: Stage) -> Margins:
     """Margins of a run with last stage `stage`, except those that depend on time steps.
 
     `lift_off` of point sliders is that of the run.
@@ -133,7 +100,7 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
     return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
 
 
-def presliding(request: "Request") -> float | None:
+def presliding(request: Request) -> float | None:
     """`Margins.presliding`, the largest of all feet."""
     largest = 0.0
     for slider, start in zip(request.sliders, request.starts, strict=True):
