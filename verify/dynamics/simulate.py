@@ -1,6 +1,5 @@
 """Motion of a linear beam: closed form without slider, exact modal steps with sliders in contact."""
 
-from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -12,7 +11,7 @@ from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import END, Motion, Statistics
-from verify.dynamics.slider_run import SliderRun
+from verify.dynamics.slider_run import Progress, SliderRun
 from verify.dynamics.stages import beam_in_time
 from verify.dynamics.validity import margins_of
 from verify.problem.beam import Beam
@@ -20,7 +19,6 @@ from verify.settings import Start
 
 CLOSED_FORM_ROWS = 2000
 """Number of times evaluated at once."""
-Progress = Callable[[float], None]
 
 
 @one_blas_thread()
