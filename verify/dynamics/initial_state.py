@@ -118,9 +118,9 @@ def static_deflection(basis: TimeBasis, assembly: Assembly, stage: Stage) -> tup
 
     A normal force acts at the material point x + (h/2) w', square to the surface, and so has the moment (h/2) w' per
     unit force on the section. Between two beams the depth is increased until each carries the preload. The engine
-    evaluates the surface under feet in the middle of a step and without its contact forces. The equilibrium is one of
-    the steps of the stage, with the rise of the surface that this makes; for points without feet it is one of a step 0.
-    Sets the speed along that the contact forces of a step before would have cancelled.
+    evaluates the surface under feet in the middle of a step and without its contact forces: the equilibrium under feet
+    is one of the steps of the stage, with the rise of the surface that this makes. Sets the speed along that the
+    contact forces of a step before would have cancelled.
     """
     p, x = assembly.points, assembly.start + assembly.points["offset"]
     side, lever, slopes = p["weight"], p["lever"], basis.shapes(x, 1)
