@@ -30,7 +30,6 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     rates: ComplexArray  # lambda, (n,), 1/s; of a mode -sigma + i omega_d
     participations: ComplexArray  # c, (n,), s/kg of unit modal mass; of a mode -i / omega_d
     loads: ComplexArray  # psi at the forces times their phasors, (n,), N/sqrt(kg)
-
     backward_loads: ComplexArray | None = None
     """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg); None for real psi."""
     readings: ComplexArray = np.empty((0, 0), dtype=complex)  # psi of outputs other than the deflection, (n, outputs)
