@@ -31,10 +31,13 @@ def assemble(beam: Beam, sliders: Sequence[PrescribedSlider], starts: Sequence[f
         feet += len(own_feet)
     two_way, springs = first.coupling == "two-way", first.contact is not None
     bilateral = not springs and first.normal == "bilateral" and two_way
-    rows, all_feet, points = (np.concatenate(arrays) for arrays in zip(*bodies, strict=True))
+    rows, feet_of_all, points = (np.concatenate(arrays) for arrays in zip(*bodies, strict=True))
     return Assembly(
         start=starts[0],
-        bodies=state.Bodies(rows, all_feet, points, np.zeros(len(points), state.CONTACT)),
+        sliders=rows,
+        feet=feet_of_all,
+        points=points,
+        contacts=np.zeros(len(points), state.CONTACT),
         kind=state.Kind(
             normal_law=state.SPRING if springs else state.BILATERAL if bilateral else state.PRESCRIBED,
             two_way=two_way,

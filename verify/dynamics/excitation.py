@@ -145,10 +145,9 @@ def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> Compl
 
 def check_damping(beam: Beam, modal_damping: float | None) -> None:
     """Raise InputError for a damping ratio, `modal_damping` or by the beam's loss factor, outside 0 to 1."""
-    if modal_damping is None:
-        check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
-    else:
-        check_number("modal_damping", modal_damping, "ratio of every mode", at_least=0, below=1)
+    own = ("half of beam.loss_factor", 0.5 * beam.loss_factor)
+    name, ratio = own if modal_damping is None else ("modal_damping", modal_damping)
+    check_number(name, ratio, "ratio of every mode", at_least=0, below=1)
 
 
 def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:

@@ -33,7 +33,10 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
 
     start: float
     """Initial position of the first slider, m, the origin of distances and edges, so that nanometres are exact."""
-    bodies: Bodies
+    sliders: Records  # (sliders,)
+    feet: Records  # (feet,), empty for points without feet
+    points: Records  # (points,), static, in the order of the sliders
+    contacts: Records  # (points,), state of the points
     kind: Kind
     moving_load: bool = False
     """Prescribed speed without friction: the run continues without contact after a point has left the beam."""
@@ -42,24 +45,9 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
 
     @property
-    def sliders(self) -> Records:
-        """Sliders, (sliders,)."""
-        return self.bodies.sliders
-
-    @property
-    def feet(self) -> Records:
-        """Feet, (feet,); empty for points without feet."""
-        return self.bodies.feet
-
-    @property
-    def points(self) -> Records:
-        """Points, static, (points,), in the order of the sliders."""
-        return self.bodies.points
-
-    @property
-    def contacts(self) -> Records:
-        """State of the points, (points,)."""
-        return self.bodies.contacts
+    def bodies(self) -> Bodies:
+        """The arrays as the kernels advance them."""
+        return Bodies(self.sliders, self.feet, self.points, self.contacts)
 
     @property
     def springs(self) -> bool:
@@ -68,7 +56,7 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
 
     def copy(self) -> "Assembly":
         """The same state in arrays of its own, to be advanced."""
-        return replace(self, bodies=Bodies(*(array.copy() for array in self.bodies)))
+        return replace(self, **{name: array.copy() for name, array in self.bodies._asdict().items()})
 
 
 def run_stages(
