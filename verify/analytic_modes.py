@@ -315,34 +315,16 @@ class ExactModel(BeamModel):
 
         def without_modes(forces: Sequence[PointLoad], frequency_hz: float, loss: float) -> Callable[..., Any]:
             field = ExactModel(replace(beam, loss_factor=loss)).harmonic(forces, frequency_hz)
-            orders = [int(isinstance(force, PointMoment)) for force in forces]
-            loads = sum(
-                phasor(force) * shapes(np.array([force.position]), order)[:, 0]
-                for force, order in zip(forces, orders, strict=True)
-            )
+            at = ((force, np.array([force.position]), int(isinstance(force, PointMoment))) for force in forces)
+            loads = sum(phasor(force) * shapes(x, order)[:, 0] for force, x, order in at)
             part = loads / (omegas**2 * (1.0 + 1j * loss) - field.omega**2)
             return lambda x, derivative: field.shapes(x, derivative) - part @ shapes(x, derivative)
 
         def tail(forces: Sequence[PointLoad], frequency_hz: float, damping: Any) -> Callable[[Array, int], Any]:
-            """The exact field less the part of the modes: the quasi-static response of the higher modes.
-
-            This difference is finite at an undamped resonance of a mode, where the field does not exist. Its mean over
-            the loss factors +eta and -eta is a series in eta^2, extrapolated to eta = 0 from `_LOSSES`, which are
-            within the radius of convergence: the distance to the resonance of the first truncated mode.
-            """
             if damping or abs(2.0 * pi * frequency_hz / omegas - 1.0).min() > _NEAR:
                 return without_modes(forces, frequency_hz, 2.0 * float(damping))
-            losses = _LOSSES * (1.0 - (frequency_hz / self.frequency_hz(n_modes + 1)) ** 2)
-            squares = losses**2
-            weights = (squares / (squares - squares[:, None] + np.diag(squares))).prod(axis=1)  # Lagrange's, at zero
-            mirrored = [replace(force, phase_deg=-force.phase_deg) for force in forces]
-            pairs = [
-                [without_modes(some, frequency_hz, loss) for some in (forces, mirrored)] for loss in losses.tolist()
-            ]
-            return lambda x, derivative: sum(
-                0.5 * weight * (part(x, derivative) + mirror(x, derivative).conj())
-                for weight, (part, mirror) in zip(weights, pairs, strict=True)
-            )
+            ratio = frequency_hz / self.frequency_hz(n_modes + 1)
+            return _lossless(lambda forces, loss: without_modes(forces, frequency_hz, loss), forces, ratio)
 
         # cells of at most 0.4 over the wavenumber of the highest mode
         stops = np.array(self.layout.positions) * beam.length
@@ -362,6 +344,26 @@ class ExactModel(BeamModel):
             method=f"the first {n_modes} exact modes, higher modes quasi-static",
             tail=tail,
         )
+
+
+def _lossless(
+    field: Callable[[Sequence[PointLoad], float], Callable[..., Any]], forces: Sequence[PointLoad], ratio: float
+) -> Callable[[Array, int], Any]:
+    """The exact field less the part of the modes, (forces, loss factor) -> field, for loss factor 0 near a resonance.
+
+    This difference is finite at an undamped resonance of a mode, where the field does not exist. Its mean over the loss
+    factors +eta and -eta is a series in eta^2, extrapolated to eta = 0 from `_LOSSES`, which are within the radius of
+    convergence: the distance to the resonance of the first truncated mode, of which the drive has the `ratio`.
+    """
+    losses = _LOSSES * (1.0 - ratio**2)
+    squares = losses**2
+    weights = (squares / (squares - squares[:, None] + np.diag(squares))).prod(axis=1)  # Lagrange's, at zero
+    mirrored = [replace(force, phase_deg=-force.phase_deg) for force in forces]
+    pairs = [[field(some, loss) for some in (forces, mirrored)] for loss in losses.tolist()]
+    return lambda x, derivative: sum(
+        0.5 * weight * (part(x, derivative) + mirror(x, derivative).conj())
+        for weight, (part, mirror) in zip(weights, pairs, strict=True)
+    )
 
 
 def check_in_time(beam: Beam, remedy: str = "give model = 'fem' or 'segment'") -> None:

@@ -18,12 +18,13 @@ from verify.chain.kinematics import at_rest, energies
 from verify.chain.motion import from_rest, highest_frequency, step_limit
 from verify.chain.statics import solve_static
 from verify.chain.system import ChainState, LinkLoad, build_system, straight_chain
-from verify.dynamics.arguments import Excitation, Keep, Sliders, Step, is_sequence
+from verify.dynamics.arguments import Excitation, Keep, Sliders, Step
 from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equilibrium, set_down
-from verify.dynamics.linear_system import Stage, Steps, basis_of, stages_from_rest
+from verify.dynamics.linear_system import Stage, Steps, basis_of
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import Motion
 from verify.dynamics.slider_run import Progress, SliderRun
+from verify.dynamics.stages import stages_from_rest
 from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
 from verify.dynamics.stepping import Assembly, Run, response_of
 from verify.errors import InputError, shown
@@ -74,9 +75,9 @@ def slide_on_chain(
         beam, count, request.forces, request.frequency_hz, load=load, joint_dashpot=joint_dashpot, links=links
     )
     basis = basis_of(beam, "segment", count, None, "spline")
-    stages = stages_from_rest(basis, request.forces, request.omega, 0.0, request.pieces, 0.0)
+    stages = stages_from_rest(request, basis, 0.0)
     notes = (f"nonlinear chain of {links} links from rest; coupling and margins are those of the linear chain",)
-    run = ChainRun.of(request, basis, stages, notes, sequence=is_sequence(slider))
+    run = ChainRun.of(request, basis, stages, notes)
     up = np.triu(np.ones((count, count + 1)), 1)  # a unit step of one link displaces all joints after it
     line = contact_line(straight_chain(system), up)
     motion = replace(run, system=system, line=line, tolerance=tolerance).converged(progress)
@@ -233,9 +234,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
             before=assembly.copy().bodies,
         )
 
-    def _marched(
-        self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress
-    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
+    def _marched(self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress) -> Run:
         from verify.chain.slider_kernels import advance
 
         (stage,), system, began, two_way = stages, self.system, thread_time(), assembly.kind.two_way
@@ -249,7 +248,7 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         assembly.contacts["depth_before"] = assembly.contacts["depth"]
         advance(0, *arguments, run.journal)
         run.sample_first()
-        deflection = (places[:, :count] @ self._rises(self._rest(assembly)))[None]
+        run.journal.deflections[0] = places[:, :count] @ self._rises(self._rest(assembly))
         run.set_up_s, began = thread_time() - began, thread_time()
         reason, chunk = DONE, MARCHED if two_way else CHUNK
         while reason == DONE and run.step < steps.n:
@@ -261,12 +260,11 @@ class ChainRun(SliderRun, frozen=True, eq=False, kw_only=True):
         elif reason == OFF_PIECES:
             x = assembly.start + run.positions()
             run.stopped = stage.beyond(float(x.min()), float(x.max()))
-        gains = (0.0, 0.0, 0.0)
         if system.rigid:
             ends = np.array([first, chain.states[0 if two_way else 2 * run.n_steps]])
             angles, rates = (np.diff(part, prepend=0.0) for part in (ends[:, :n], ends[:, n : 2 * n]))
             (k0, k1), (e0, e1), _ = energies(system, np.zeros(2), angles, rates)
-            gains = float(k1 - k0), float(e1 - e0), float(k0 + e0)
+            run.gains, run.accounts = (float(k1 - k0), float(e1 - e0), float(k0 + e0)), True
             for name, gained in zip(("lost", "driven"), ends[1, 2 * n :], strict=True):
                 run.journal.balance[name] += gained
-        return run.recorded(z, stage), deflection, gains, system.rigid
+        return run.recorded(z, stage)

@@ -87,30 +87,21 @@ dissipated power in `one_way`; events: number, share of the step and kind of eac
 class Bodies(NamedTuple):
     """Sliders, their feet and contact points, in the order of the sliders."""
 
-    sliders: Records
-    """(sliders,), SLIDER"""
-    feet: Records
-    """(feet,), FOOT; empty for points without feet."""
-    points: Records
-    """(points,), POINT"""
-    contacts: Records
-    """(points,), CONTACT"""
+    sliders: Records  # (sliders,), SLIDER
+    feet: Records  # (feet,), FOOT; empty for points without feet
+    points: Records  # (points,), POINT
+    contacts: Records  # (points,), CONTACT
 
 
 class Kind(NamedTuple):
     """What is common to all points of a run."""
 
     normal_law: int
-    two_way: bool
-    """Whether the beam responds to friction."""
-    normal_two_way: bool
-    """Whether it responds to normal forces as well."""
-    several: bool
-    """Whether several points are coupled by the response of the beam."""
-    following: bool
-    """Whether points follow the deflected surface (kinematics "following")."""
-    gravity: float
-    """m/s^2 along the slope, with `following`."""
+    two_way: bool  # Whether the beam responds to friction
+    normal_two_way: bool  # Whether it responds to normal forces as well
+    several: bool  # Whether several points are coupled by the response of the beam
+    following: bool  # Whether points follow the deflected surface (kinematics "following")
+    gravity: float  # m/s^2 along the slope, with `following`
 
 
 class Response(NamedTuple):
@@ -119,12 +110,9 @@ class Response(NamedTuple):
     shapes: Array
     """(4, points, columns): tangential and normal speed at a point by the rates of the columns, then the mean rates of
     the columns by a unit force of either direction at it, times its weight."""
-    rates: Array
-    """(columns,): what all contact forces add to the mean rates."""
-    couplings: Array
-    """(2, points, points): speed across at the end of the step by unit friction and normal forces."""
-    block: Array
-    """(points, points + 1), matrix and right side of the active sets."""
+    rates: Array  # (columns,): what all contact forces add to the mean rates
+    couplings: Array  # (2, points, points): speed across at the end of the step by unit friction and normal forces
+    block: Array  # (points, points + 1), matrix and right side of the active sets
 
 
 class Slip(NamedTuple):
@@ -133,25 +121,16 @@ class Slip(NamedTuple):
     In units of one step r' = compliance f - a, `a` linear from `first` to `last`.
     """
 
-    start: float
-    """r at the start, m/s."""
-    first: float
-    """Gain of the surface over the slider a at the start, m/s per step."""
-    last: float
-    """The same at the end."""
-    mean: float
-    """Mean of r, m/s."""
-    sticking: float
-    """Mean of r at which a point sticks, m/s."""
-    mobility: float
-    """dt/m of the slider."""
-    compliance: float
-    """dt/m + 2 w, with the mean response w of the surface to a unit force."""
+    start: float  # r at the start, m/s
+    first: float  # Gain of the surface over the slider a at the start, m/s per step
+    last: float  # The same at the end
+    mean: float  # Mean of r, m/s
+    sticking: float  # Mean of r at which a point sticks, m/s
+    mobility: float  # dt/m of the slider
+    compliance: float  # dt/m + 2 w, with the mean response w of the surface to a unit force
     dt: float
-    several: bool
-    """Whether several points are coupled by the response of the beam."""
-    own: bool
-    """Whether the surface responds to this point."""
+    several: bool  # Whether several points are coupled by the response of the beam
+    own: bool  # Whether the surface responds to this point
 
 
 class Path(NamedTuple):
@@ -159,12 +138,8 @@ class Path(NamedTuple):
 
     start: float
     end: float
-    mobility: float
-    """dt/m of the slider, which bends the line where the point's own force reverses."""
-    end_weight: float
-    """Share of the force at the end of the step in the mean of a smooth law."""
-    limit: float
-    """Largest friction, N, infinite for the law without its limit."""
-    rounding: float
-    """Speed below which the point is at rest."""
+    mobility: float  # dt/m of the slider, which bends the line where the point's own force reverses
+    end_weight: float  # Share of the force at the end of the step in the mean of a smooth law
+    limit: float  # Largest friction, N, infinite for the law without its limit
+    rounding: float  # Speed below which the point is at rest
     dt: float

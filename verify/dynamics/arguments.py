@@ -95,11 +95,6 @@ Sliders = Slider | PrescribedSlider | Sequence[Slider | PrescribedSlider]
 """One slider, free or with prescribed motion, or several."""
 
 
-def is_sequence(sliders: Sliders | None) -> bool:
-    """Whether results have an axis of sliders."""
-    return not isinstance(sliders, Slider | PrescribedSlider)
-
-
 def sliders_of(sliders: Sliders | None) -> tuple[PrescribedSlider, ...]:
     """Every slider with its prescribed motion. Raises InputError for other types."""
     items: tuple[Any, ...] = () if sliders is None else as_tuple("slider", sliders, Slider, PrescribedSlider)

@@ -29,18 +29,12 @@ UNSTABLE = "circuits: a negative capacitance makes the beam unstable, give a sma
 class CircuitRows(Rows, frozen=True, eq=False, kw_only=True):
     """Rows of modal amplitudes (sqrt(kg) m) and charges (C); readings: voltages and charges of all actuators."""
 
-    vectors: ComplexArray
-    """u, (coordinates, n)."""
-    inertia: Array
-    """M, (coordinates,): 1 and inductances, H."""
-    damping: Array
-    """D, (coordinates,): 2 zeta omega and resistances, ohm."""
-    stiffness: Array
-    """K, (coordinates, coordinates)."""
-    forces: ComplexArray
-    """Phasors of F, (coordinates,)."""
-    modes: int
-    """Number of modal amplitudes, the first coordinates."""
+    vectors: ComplexArray  # u, (coordinates, n)
+    inertia: Array  # M, (coordinates,): 1 and inductances, H
+    damping: Array  # D, (coordinates,): 2 zeta omega and resistances, ohm
+    stiffness: Array  # K, (coordinates, coordinates)
+    forces: ComplexArray  # Phasors of F, (coordinates,)
+    modes: int  # Number of modal amplitudes, the first coordinates
 
     @property
     def sizes(self) -> tuple[int, ...]:

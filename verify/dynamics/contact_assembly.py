@@ -4,20 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from verify.contact.state import (
-    BILATERAL,
-    CONTACT,
-    ELASTIC,
-    FOOT,
-    LAWS,
-    POINT,
-    PRESCRIBED,
-    SLIDER,
-    SPRING,
-    Bodies,
-    Kind,
-    Records,
-)
+from verify.contact import state
 from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.stepping import Assembly
 from verify.errors import InputError, written
@@ -44,12 +31,15 @@ def assemble(beam: Beam, sliders: Sequence[PrescribedSlider], starts: Sequence[f
         feet += len(own_feet)
     two_way, springs = first.coupling == "two-way", first.contact is not None
     bilateral = not springs and first.normal == "bilateral" and two_way
-    rows, all_feet, points = (np.concatenate(arrays) for arrays in zip(*bodies, strict=True))
+    rows, feet_of_all, points = (np.concatenate(arrays) for arrays in zip(*bodies, strict=True))
     return Assembly(
         start=starts[0],
-        bodies=Bodies(rows, all_feet, points, np.zeros(len(points), CONTACT)),
-        kind=Kind(
-            normal_law=SPRING if springs else BILATERAL if bilateral else PRESCRIBED,
+        sliders=rows,
+        feet=feet_of_all,
+        points=points,
+        contacts=np.zeros(len(points), state.CONTACT),
+        kind=state.Kind(
+            normal_law=state.SPRING if springs else state.BILATERAL if bilateral else state.PRESCRIBED,
             two_way=two_way,
             normal_two_way=two_way and (springs or bilateral),
             several=two_way and len(points) > 1,
@@ -61,9 +51,9 @@ def assemble(beam: Beam, sliders: Sequence[PrescribedSlider], starts: Sequence[f
     )
 
 
-def _bodies(prescribed: PrescribedSlider, offset: float) -> tuple[Records, Records, Records]:
+def _bodies(prescribed: PrescribedSlider, offset: float) -> tuple[state.Records, state.Records, state.Records]:
     """A slider `offset` from the first, its feet and points, of which the feet are numbered from 0."""
-    row, slider, speed = np.zeros(1, SLIDER), prescribed.slider, prescribed.speed
+    row, slider, speed = np.zeros(1, state.SLIDER), prescribed.slider, prescribed.speed
     row["v"], row["inverse_mass"] = (slider.speed, 1.0 / slider.mass) if speed is None else (speed, 0.0)
     row["mu"], row["mu_static"] = slider.mu, slider.mu if slider.mu_static is None else slider.mu_static
     row["steepness"], row["external_force"] = slider.steepness or 0.0, slider.external_force
@@ -74,19 +64,19 @@ def _bodies(prescribed: PrescribedSlider, offset: float) -> tuple[Records, Recor
         points = np.concatenate(sheets)
         points["foot"] = np.repeat(np.arange(len(sheets)), [len(sheet) for sheet in sheets])
     else:
-        feet, points = np.zeros(0, FOOT), np.zeros(1, POINT)
+        feet, points = np.zeros(0, state.FOOT), np.zeros(1, state.POINT)
         points["face"], points["image"], points["weight"] = 1.0, 1.0, 1.0
         points["load"], points["mass"] = slider.normal_force, slider.mass
     points["offset"] += offset
-    points["law"] = np.where(points["tangential_stiffness"] > 0.0, ELASTIC, LAWS[slider.law])
+    points["law"] = np.where(points["tangential_stiffness"] > 0.0, state.ELASTIC, state.LAWS[slider.law])
     return row, feet, points
 
 
-def _foot_points(slider: Slider, foot: Foot) -> Records:
+def _foot_points(slider: Slider, foot: Foot) -> state.Records:
     """Contact points of a foot; of a foot between two beams those below, then those above."""
     contact = slider.contact
     assert contact is not None
-    normal, points = contact.across(foot.length), np.zeros(foot.points, POINT)
+    normal, points = contact.across(foot.length), np.zeros(foot.points, state.POINT)
     points["arm"] = foot.length * ((np.arange(foot.points) + 0.5) / foot.points - 0.5)
     points["offset"] = foot.offset + points["arm"]
     points["stiffness"], points["dashpot"] = normal / foot.points, contact.damping / foot.points
@@ -102,9 +92,9 @@ def _foot_points(slider: Slider, foot: Foot) -> Records:
     return np.concatenate([points, above])
 
 
-def _foot(slider: Slider, foot: Foot) -> Records:
+def _foot(slider: Slider, foot: Foot) -> state.Records:
     """A foot at height 0 and at rest, (1,)."""
-    mass, row = slider.moving_mass(foot), np.zeros(1, FOOT)
+    mass, row = slider.moving_mass(foot), np.zeros(1, state.FOOT)
     inertia = mass * foot.length**2 / 12.0 if foot.inertia is None else foot.inertia
     preload = slider.preload / len(slider.feet)
     force = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload

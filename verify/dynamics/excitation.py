@@ -27,17 +27,12 @@ SERIES = 12
 class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Complex modal rows: z' = lambda z + c psi(x) f, with the contribution Re(psi(x) z) to the deflection."""
 
-    rates: ComplexArray
-    """lambda, (n,), 1/s; of a mode -sigma + i omega_d."""
-    participations: ComplexArray
-    """c, (n,), s/kg of unit modal mass; of a mode -i / omega_d."""
-    loads: ComplexArray
-    """psi at the forces times their phasors, (n,), N/sqrt(kg)."""
-
+    rates: ComplexArray  # lambda, (n,), 1/s; of a mode -sigma + i omega_d
+    participations: ComplexArray  # c, (n,), s/kg of unit modal mass; of a mode -i / omega_d
+    loads: ComplexArray  # psi at the forces times their phasors, (n,), N/sqrt(kg)
     backward_loads: ComplexArray | None = None
     """conj(psi) at the forces times their phasors, (n,), N/sqrt(kg); None for real psi."""
-    readings: ComplexArray = np.empty((0, 0), dtype=complex)
-    """psi of outputs other than the deflection, (n, outputs)."""
+    readings: ComplexArray = np.empty((0, 0), dtype=complex)  # psi of outputs other than the deflection, (n, outputs)
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -74,14 +69,12 @@ class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 class Forced(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The forced part z = sum_d (t/T)^d (A_d e^{i omega s} + conj(B_d) e^{-i omega s}) of all rows, s = t + origin."""
 
-    forward: ComplexArray
-    """A, (n, degree + 1)."""
+    forward: ComplexArray  # A, (n, degree + 1)
     backward: ComplexArray
     """B, (n, degree + 1): conjugated, so that the deflection is Re((psi A + conj(psi) B) (t/T)^d e^{i omega s})."""
     omega: float
     origin: float
-    unit_s: float
-    """T."""
+    unit_s: float  # T
 
     def at(self, t: float) -> ComplexArray:
         """The state z of every row at time t, (n,)."""
@@ -152,10 +145,9 @@ def _amplitudes(stiff: ComplexArray, load: ComplexArray, unit_s: float) -> Compl
 
 def check_damping(beam: Beam, modal_damping: float | None) -> None:
     """Raise InputError for a damping ratio, `modal_damping` or by the beam's loss factor, outside 0 to 1."""
-    if modal_damping is None:
-        check_number("half of beam.loss_factor", 0.5 * beam.loss_factor, "ratio of every mode", at_least=0, below=1)
-    else:
-        check_number("modal_damping", modal_damping, "ratio of every mode", at_least=0, below=1)
+    own = ("half of beam.loss_factor", 0.5 * beam.loss_factor)
+    name, ratio = own if modal_damping is None else ("modal_damping", modal_damping)
+    check_number(name, ratio, "ratio of every mode", at_least=0, below=1)
 
 
 def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: Ratio) -> None:

@@ -87,40 +87,37 @@ def free_vibration(
     The modal amplitudes of the shape are phi^T M w, a least-squares fit weighted by mass and rotary inertia. Each mode
     is q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
     Vibrations, 1967, ch. 5). Bodies rotate with the slope of the shape, at a corner with the mean of both sides.
+    Raises InputError for invalid arguments, and for a beam with rigid-body motions.
 
     Parameters
     ----------
-    beam : Beam
-        Supported against rigid-body motions.
+    beam, duration : Beam, float
+        Supported against rigid-body motions; seconds.
     shape, velocity : callable, pair, int or None
         A function of x, a pair (x, values) with linear interpolation from 0 to L, or None for zero. `shape` may be a
         mode number with `amplitude`. Values are zero at pinned and clamped ends.
-    duration : float
-        Seconds.
     amplitude : float, optional
         Largest deflection of the mode of `shape`, m, positive next to the left end.
-    model, count, modes : str, int, int
-        Model, number of segments or elements, number of modes of the exact beam (default: 400).
-    modal_damping : float, optional
-        Damping ratio of every mode; default: by the beam's loss factor.
-    at : float or sequence
-        Positions of deflection and velocity, (p,), m.
-    samples : int
-        Number of times from 0 to `duration`.
-
-    Raises
-    ------
-    InputError
-        For invalid arguments, and for a beam with rigid-body motions.
+    model, count, modes, modal_damping : str, int, int, float
+        Model, number of segments or elements, number of modes of the exact beam (default: 400), damping ratio of every
+        mode (default: by the beam's loss factor).
+    at, samples : float or sequence, int
+        Positions of deflection and velocity, (p,), m; number of times from 0 to `duration`.
     """
     check_number("duration", duration, "seconds", above=0)
     check_damping(beam, modal_damping)
     check_integer("samples", samples, 2, MOST_SAMPLES)
     points = vector_on("at", at, beam.length)
     basis = basis_of(beam, model, count, modes)
-    damping = damping_in(basis, modal_damping)
-    q, rates, truncation = _start(basis, shape, amplitude, velocity)
-    rows, times = modal_rows(basis, (), damping), np.linspace(0.0, duration, samples)
+    damping, start = damping_in(basis, modal_damping), _start(basis, shape, amplitude, velocity)
+    return _released(basis, damping, *start, np.linspace(0.0, duration, samples), points)
+
+
+def _released(
+    basis: TimeBasis, damping: Ratio, q: Array, rates: Array, truncation: float, times: Array, points: Array
+) -> FreeVibration:
+    """The vibration from modal amplitudes q and their rates, (m,)."""
+    rows = modal_rows(basis, (), damping)
     z0, shapes, parts = rows.of_state(q, rates), basis.shapes(points, 0), []
     for block in np.array_split(times, 1 + times.size * q.size // 10_000_000):  # memory
         z = rows.after(z0, block)
@@ -129,21 +126,22 @@ def free_vibration(
         parts.append((now @ shapes, speed @ shapes, *energies))
     modal = q**2 * basis.omegas**2
     corners = modal[len(q) // 2 :].sum() > CORNERED * modal.sum()
-    deflection, rate, kinetic, elastic = (np.concatenate(part) for part in zip(*parts, strict=True))
+    deflection, velocity, kinetic, elastic = (np.concatenate(part) for part in zip(*parts, strict=True))
+    end, model, count = float(times[-1]), basis.model, basis.count
     return FreeVibration(
-        model=basis.model,
-        count=basis.count,
+        model=model,
+        count=count,
         damping=damping,
         times=times,
         points=points,
         deflection=deflection,
-        velocity=rate,
+        velocity=velocity,
         kinetic=kinetic,
         elastic=elastic,
         frequencies_hz=basis.omegas / (2.0 * np.pi),
         amplitudes=q,
         truncation=truncation,
-        end=EndState(beam=beam, model=basis.model, count=basis.count, time=float(duration), q=now[-1], rates=speed[-1]),
+        end=EndState(beam=basis.beam, model=model, count=count, time=end, q=now[-1], rates=speed[-1]),
         notes=(f"modes: {basis.method}", *((CORNERS,) if corners else ())),
     )
 

@@ -35,19 +35,15 @@ class Ground(NamedTuple):
     """A surface that is known at every instant, and working space."""
 
     beam: Beam
-    columns: Array
-    """(3, columns): factors and their first two derivatives."""
+    columns: Array  # (3, columns): factors and their first two derivatives
 
 
 class Rigid(NamedTuple):
     """Constants of the point."""
 
-    mass: float
-    """Across the beam, kg."""
-    pressing: float
-    """Acceleration that presses it on, m/s^2."""
-    external: float
-    """Acceleration of its slider by the external force, m/s^2."""
+    mass: float  # Across the beam, kg
+    pressing: float  # Acceleration that presses it on, m/s^2
+    external: float  # Acceleration of its slider by the external force, m/s^2
     lever: float
     restitution: float
 
@@ -56,14 +52,10 @@ class Under(NamedTuple):
     """The surface under the point."""
 
     level: float
-    vz: float
-    """Rate of the level under the moving point, m/s."""
-    slope_vz: float
-    """Its part by slopes."""
-    acceleration: float
-    """Acceleration across of a point that rides on it, m/s^2, without w' dv/dt: mu w' of the load."""
-    along: float
-    """Tangential speed of the material, m/s."""
+    vz: float  # Rate of the level under the moving point, m/s
+    slope_vz: float  # Its part by slopes
+    acceleration: float  # Acceleration across of a point that rides on it, m/s^2, without w' dv/dt: mu w' of the load
+    along: float  # Tangential speed of the material, m/s
 
 
 @inline(fastmath=FAST)

@@ -113,21 +113,24 @@ def _carried(assembly: Assembly, depth: Array, compliance: Array, moves: Array) 
     raise InputError("slider.preload: no set of points in contact carries the feet at rest, lower it")
 
 
-def static_deflection(
-    basis: TimeBasis, assembly: Assembly, released: Callable[[Array, float], Array], dt: float
-) -> tuple[Array, Array]:
+def static_deflection(basis: TimeBasis, assembly: Assembly, stage: Stage) -> tuple[Array, Array]:
     """Static equilibrium under the sliders: modal amplitudes, (n,), sqrt(kg) m, and a rise of points, (points,), m.
 
     A normal force acts at the material point x + (h/2) w', square to the surface, and so has the moment (h/2) w' per
     unit force on the section. Between two beams the depth is increased until each carries the preload. The engine
-    evaluates the surface under feet in the middle of a step and without its contact forces: `released` are amplitudes
-    after a time without them. The equilibrium is one of steps of dt with the rise of the surface that this makes; for
-    points without feet dt is 0. Sets the speed along that the contact forces of a step before would have cancelled.
+    evaluates the surface under feet in the middle of a step and without its contact forces: the equilibrium under feet
+    is one of the steps of the stage, with the rise of the surface that this makes. Sets the speed along that the
+    contact forces of a step before would have cancelled.
     """
     p, x = assembly.points, assembly.start + assembly.points["offset"]
     side, lever, slopes = p["weight"], p["lever"], basis.shapes(x, 1)
     if len(assembly.feet):
         side = side * p["face"] * p["image"]
+    dt, rows = stage.steps.dt if assembly.springs else 0.0, stage.rows
+
+    def released(q: Array, seconds: float) -> Array:
+        """Amplitudes after a time without contact forces."""
+        return rows.state(rows.after(rows.of_state(q, 0.0 * q), seconds))[0][: len(q)] if dt else q
 
     def shapes(q: Array) -> tuple[Array, Array, Array]:
         """Generalised displacements of all points, normal and tangential, (n, points), and slopes, (points,)."""

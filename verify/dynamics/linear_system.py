@@ -10,12 +10,11 @@ from msgspec.structs import replace
 
 from verify.actuators.on_beam import ActuatedBeam, Mounted, on_beam
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.circuits import rows_on
-from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, forced_response, interleaved
+from verify.dynamics.excitation import CONSTANT, NO_ROWS, Forced, Rows, interleaved
 from verify.linear.positions import SLACK
 from verify.linear.registry import MODELS
 from verify.linear.surface import LEFT_BEAM, ContactRange
-from verify.linear.time_basis import Ratio, TimeBasis, taylor_table
+from verify.linear.time_basis import TimeBasis, taylor_table
 from verify.problem.beam import Beam, PointLoad, PointMoment, is_lossless
 
 NO_READINGS = np.empty((1, 0), dtype=complex)
@@ -28,8 +27,7 @@ class Steps(msgspec.Struct, frozen=True):
 
     n: int
     dt: float
-    every: int
-    """Steps from sample to sample."""
+    every: int  # Steps from sample to sample
 
     @property
     def duration(self) -> float:
@@ -54,28 +52,21 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """An interval with one polynomial envelope of the forces; its time t starts at 0."""
 
     rows: Rows = NO_ROWS
-    forced: Forced | None = None
-    """None where the drive's rows are a steady field."""
+    forced: Forced | None = None  # None where the drive's rows are a steady field
     shapes: Callable[[Array, int], Any] = lambda x, derivative: np.empty((0, len(x)))
     """(x, derivative) -> psi, (n, len(x)), 1/sqrt(kg) per metre^derivative; n = 0 without free modes."""
     field: Callable[[Array, int, Any], ComplexArray]
     """(x, derivative, psi) -> shapes of the drive, one for each power of t, (degree + 1, len(x)), m."""
-    edges: Array
-    """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
+    edges: Array  # (pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`
     degree: int
     omega: float
-    origin: float = 0.0
-    """Start time of the stage, s."""
+    origin: float = 0.0  # Start time of the stage, s
     unit_s: float = 1.0
-    envelope: Array = CONSTANT
-    """Amplitude of the forces as a polynomial in t / unit_s."""
+    envelope: Array = CONSTANT  # Amplitude of the forces as a polynomial in t / unit_s
     steps: Steps
-    complex_rows: int = 0
-    """Number of rows with complex psi, which are the last ones."""
-    readings: ComplexArray = NO_READINGS
-    """(powers of t, outputs): shapes of the drive for the outputs `rows.readings`."""
-    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
-    """Messages for a slider beyond the first edge, and beyond the last."""
+    complex_rows: int = 0  # Number of rows with complex psi, which are the last ones
+    readings: ComplexArray = NO_READINGS  # (powers of t, outputs): shapes of the drive for the outputs `rows.readings`
+    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)  # Messages for a slider beyond the first edge, and beyond the last
 
     @property
     def duration(self) -> float:
@@ -182,100 +173,6 @@ def _basis(
 ) -> TimeBasis:
     basis: TimeBasis = kind.build(beam, count).cut_at(moments).time_basis(modes=modes, line=line)
     return basis
-
-
-def stages_from_rest(
-    basis: TimeBasis,
-    forces: Sequence[PointLoad],
-    omega: float,
-    damping: Ratio,
-    pieces: Sequence[Growth],
-    origin: float,
-    circuits: Sequence[Mounted] = (),
-) -> list[Stage]:
-    """One stage per piece of the envelope, with the quasi-static response of truncated modes."""
-    rows, stages = rows_on(basis, forces, damping, circuits, omega), []
-    tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail and forces else None
-    if tail:  # its third derivative jumps where a force acts
-        basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
-    for piece in pieces:
-        unit, envelope = piece.steps.duration, piece.coefficients
-        forced = forced_response(rows, omega, envelope, unit, origin)
-        growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope))) if tail else envelope
-
-        def field(x: Array, derivative: int, psi: Any, forced: Forced = forced, growth: Array = growth) -> ComplexArray:
-            shapes = forced.drive_shapes(psi)  # truncated modes follow the envelope without delay
-            return shapes + np.outer(growth, tail(x, derivative)) if tail else shapes
-
-        stages.append(
-            Stage(
-                rows=rows,
-                forced=forced,
-                shapes=rows.shapes(basis),
-                field=field,
-                edges=_to_the_end(basis.edges, basis.beam),
-                degree=basis.degree,
-                omega=omega,
-                origin=origin,
-                unit_s=unit,
-                envelope=envelope,
-                steps=piece.steps,
-                complex_rows=len(rows.rates) * bool(circuits),
-                readings=forced.drive_shapes(rows.readings) if circuits else NO_READINGS,
-            )
-        )
-        origin += unit
-    return stages
-
-
-def steady_stage(
-    state: ActuatedBeam,
-    steps: Steps,
-    origin: float,
-    basis: TimeBasis | None,
-    damping: Ratio,
-    circuits: Sequence[Mounted] = (),
-) -> Stage:
-    """A beam in its steady state; the modes of `basis` start at rest and respond to contact forces."""
-    harmonic = state.field
-    beam, degree = harmonic.beam, 3
-    if harmonic.edges is not None:
-        edges = harmonic.edges
-    else:
-        softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
-        cells = int(np.ceil(beam.length * abs(harmonic.wavenumber) * softest**0.25 / 0.3)) + 1
-        jumps = [*np.cumsum([piece.length for piece in beam.pieces[:-1]])]
-        jumps += [attachment.position for attachment in beam.attached]
-        jumps += [force.position for force in harmonic.forces]
-        jumps += harmonic.couples
-        edges, degree = np.union1d(np.linspace(0.0, beam.length, cells + 1), jumps), EXACT_DEGREE
-    if basis:
-        edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
-
-    def field(x: Array, derivative: int, psi: Any) -> ComplexArray:
-        # w'''' = k^4 w between the forces of a uniform exact beam, whose field has four derivatives
-        higher, rest = divmod(derivative, 4) if harmonic.count is None and harmonic.beam.uniform else (0, derivative)
-        return np.asarray(harmonic.shapes(x, rest) * harmonic.wavenumber ** (4 * higher))[None, :]
-
-    steady = [one.voltage for one in state.actuators] + [one.current / (1j * harmonic.omega) for one in state.actuators]
-    stage = Stage(
-        field=field,
-        edges=_to_the_end(edges, beam),
-        degree=degree,
-        omega=harmonic.omega,
-        origin=origin,
-        steps=steps,
-        readings=np.array([steady], dtype=complex),
-    )
-    if basis is None:
-        return stage
-    rows = rows_on(basis, (), damping, circuits, harmonic.omega)
-    return replace(stage, rows=rows, shapes=rows.shapes(basis), complex_rows=len(rows.rates) * bool(circuits))
-
-
-def _to_the_end(edges: Array, beam: Beam) -> Array:
-    """Edges with the last one set exactly to the beam's end."""
-    return np.append(edges[:-1], beam.length)
 
 
 @lru_cache(maxsize=8)  # of all windows of a motor at a fixed position

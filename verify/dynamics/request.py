@@ -9,7 +9,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
-from verify.arrays import Array
+from verify.arrays import Array, ComplexArray
 from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of, step_of
 from verify.dynamics.circuits import check_circuits
 from verify.dynamics.contact_assembly import check_sliders
@@ -50,16 +50,15 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     count: int | None
     modes: int | None
     start: str
-    modal_damping: float | None
-    """Damping ratio of every mode; None: by the beam's loss factor."""
+    modal_damping: float | None  # Damping ratio of every mode; None: by the beam's loss factor
     prescribed: tuple[PrescribedSlider, ...]
-    starts: tuple[float, ...]
-    """Initial positions of the sliders, m; in a continued run those of the first run."""
+    starts: tuple[float, ...]  # Initial positions of the sliders, m; in a continued run those of the first run
     points: Array
     pieces: tuple[Growth, ...]
     step: float | None
     before: EndState | None
-    circuits: tuple[Mounted, ...] = ()
+    circuits: tuple[Mounted, ...]
+    sequence: bool  # Whether results have an axis of sliders
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
@@ -70,6 +69,11 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def omega(self) -> float:
         """2 pi f, rad/s."""
         return 2.0 * np.pi * self.frequency_hz
+
+    @property
+    def origin(self) -> float:
+        """Start time of the run, s: the end of the earlier one."""
+        return self.before.time if self.before else 0.0
 
     @property
     def feet(self) -> bool:
@@ -111,25 +115,43 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
                 notes.append(f"forces jump from {reached:.6g} times their amplitude to all of it")
         return tuple(notes)
 
-    def end(self, stage: Stage, z: Any, time: float, **contact: Any) -> EndState:
-        """The end state at a time, s, with the total state z of the last stage."""
-        q, rates = stage.rows.state(z)
-        steady = self.start == "steady"
-        return EndState(
-            beam=self.beam, model=self.model, count=self.count, time=time, q=q, rates=rates, steady=steady, **contact
+    def released(self, stage: Stage) -> ComplexArray:
+        """Free rows z at the start, (n,), from rest or an earlier run. Raises InputError for a run of other modes."""
+        if (before := self.before) is None:
+            return stage.free(np.zeros(len(stage.rows.rates), dtype=complex))
+        if (n := len(before.q)) not in (sizes := stage.rows.sizes):
+            raise InputError(f"start has {n} modes and this run {sizes[0]}: give both the same modes")
+        return stage.free(stage.rows.of_state(before.q, before.rates))
+
+    def motion(self, stages: Sequence[Stage], outputs: Array, **more: Any) -> Motion:
+        """The motion with outputs, (n, p + 2 circuits), at the first samples of the stages."""
+        times = np.concatenate([[stages[0].origin], *(stage.origin + stage.sample_times for stage in stages)])
+        p, circuits = len(self.points), len(self.circuits)
+        deflection, voltages, charges = np.split(outputs, [p, p + circuits], axis=1)
+        return Motion(
+            model=self.model,
+            count=self.count,
+            times=times[: len(outputs)],
+            points=self.points,
+            deflection=deflection,
+            voltages=voltages,
+            charges=charges,
+            **more,
         )
 
-    def split(self, outputs: Array) -> list[Array]:
-        """Deflections (n, p), voltages and charges (n, circuits) of outputs (n, p + 2 circuits)."""
-        return np.split(outputs, [len(self.points), len(self.points) + len(self.circuits)], axis=1)
-
-    def continued(self, stage: Stage) -> Any:
-        """Total state z at the end of the earlier run. Raises InputError for other modes."""
-        before, sizes = self.before, stage.rows.sizes
-        assert before is not None
-        if (n := len(before.q)) not in sizes:
-            raise InputError(f"start has {n} modes and this run {sizes[0]}: give both the same modes")
-        return stage.rows.of_state(before.q, before.rates)
+    def end(self, stage: Stage, z: ComplexArray, time: float, **contact: Any) -> EndState:
+        """The end state at a time, s, with the total state z of the last stage."""
+        q, rates = stage.rows.state(z)
+        return EndState(
+            beam=self.beam,
+            model=self.model,
+            count=self.count,
+            time=time,
+            q=q,
+            rates=rates,
+            steady=self.start == "steady",
+            **contact,
+        )
 
 
 def request_of(
@@ -152,12 +174,14 @@ def request_of(
     check_type("keep", keep, Keep)
     check_number("duration", duration, "seconds", at_least=SHORTEST)
     check_damping(beam, modal_damping)
-    kind, given, hertz = MODELS.named(model), sliders_of(slider), excitation.frequency_hz
-    sliders = tuple(one.slider for one in given)
-    forces, circuits = _loads(beam, excitation, sliders)
-    feet = bool(sliders) and sliders[0].contact is not None
-    begins, before = _start(start, feet)
-    _check_start(begins, before, excitation, sliders, edges="raw" in kind.lines, modes=modes)
+    kind, prescribed, hertz = MODELS.named(model), sliders_of(slider), excitation.frequency_hz
+    sliders = tuple(one.slider for one in prescribed)
+    check_frequency("frequency_hz", hertz, beam)
+    forces, circuits = loads_on(beam, excitation.forces, PointLoad), as_tuple("circuits", excitation.circuits, Mounted)
+    check_circuits(beam, circuits, 2.0 * np.pi * hertz)
+    if not forces and not sliders and not circuits:
+        raise InputError("forces is empty: give at least one PointForce")
+    begins, before = _start(start, excitation, sliders, edges="raw" in kind.lines, modes=modes)
     if before is not None:
         _check_continued(before, beam, model, count, sliders)
     if hertz * (duration + (before.time if before else 0.0)) > MOST_PERIODS:
@@ -167,7 +191,7 @@ def request_of(
     if sliders:
         check_sliders(beam, sliders, starts)
     step = step_of(step)
-    longest = _longest_step(hertz, duration, step, sliders)
+    few = bool(sliders and sliders[0].contact) and not kind.sized
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and is_lossless(beam))
     return Request(
         beam=beam,
@@ -175,53 +199,34 @@ def request_of(
         frequency_hz=hertz,
         model=model,
         count=count,
-        modes=FEET_MODES if modes is None and feet and not kind.sized else modes,
+        modes=FEET_MODES if modes is None and few else modes,
         start=begins,
         modal_damping=modal_damping if replaced else None,
-        prescribed=given,
+        prescribed=prescribed,
         starts=starts,
         points=vector_on("keep.at", keep.at, beam.length),
-        pieces=_cut(duration, excitation.growth, longest, keep.samples - 1),
+        pieces=_cut(duration, excitation.growth, _longest_step(hertz, duration, step, sliders), keep.samples - 1),
         step=step.seconds,
         before=before,
         circuits=circuits,
+        sequence=not isinstance(slider, Slider | PrescribedSlider),
     )
 
 
-def _loads(
-    beam: Beam, excitation: Excitation, sliders: tuple[Slider, ...]
-) -> tuple[tuple[PointLoad, ...], tuple[Mounted, ...]]:
-    """Forces and circuits on a beam. Raises InputError, also for nothing that moves the beam."""
-    check_frequency("frequency_hz", excitation.frequency_hz, beam)
-    forces, circuits = loads_on(beam, excitation.forces, PointLoad), as_tuple("circuits", excitation.circuits, Mounted)
-    check_circuits(beam, circuits, 2.0 * np.pi * excitation.frequency_hz)
-    if not forces and not sliders and not circuits:
-        raise InputError("forces is empty: give at least one PointForce")
-    return forces, circuits
+def _start(
+    start: Any, excitation: Excitation, sliders: Sequence[Slider], *, edges: bool, modes: int | None
+) -> tuple[str, EndState | None]:
+    """("rest" or "steady", state that the run continues); `edges`: whether the model has straight links.
 
-
-def _start(start: Any, feet: bool) -> tuple[str, EndState | None]:
-    """("rest" or "steady", state that the run continues). Raises InputError."""
-    if start is None:
-        return "steady" if feet else "rest", None
+    Raises InputError for another start, and for what this one excludes.
+    """
     before = getattr(start, "end", None)
     if isinstance(before, EndState):
-        return "steady" if before.steady else "rest", before
+        start = "steady" if before.steady else "rest"
+    else:
+        before, start = None, ("steady" if sliders and sliders[0].contact else "rest") if start is None else start
     if not isinstance(start, str) or start not in ("rest", "steady"):
         raise InputError(f"start = {shown(start)}: give 'rest', 'steady', a Motion or a FreeVibration")
-    return start, None
-
-
-def _check_start(
-    start: str,
-    before: EndState | None,
-    excitation: Excitation,
-    sliders: Sequence[Slider],
-    *,
-    edges: bool,
-    modes: int | None,
-) -> None:
-    """Raise InputError for what this initial state excludes; `edges`: whether the model has straight links."""
     if sliders and sliders[0].line == "raw" and (not edges or start == "steady"):
         raise InputError("slider.line = 'raw': this model and start have no straight edges of links, leave it out")
     if modes is not None and start == "steady" and not (sliders and sliders[0].coupling == "two-way"):
@@ -230,6 +235,7 @@ def _check_start(
         name = "soft_start_periods" if excitation.soft_start_periods else "envelope"
         value = shown(getattr(excitation, name))
         raise InputError(f"{name} = {value}: forces grow from start = 'rest' alone, leave it out or give this start")
+    return start, before
 
 
 def _longest_step(frequency_hz: float, duration: float, step: Step, sliders: Sequence[Slider]) -> float:

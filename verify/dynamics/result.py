@@ -5,7 +5,6 @@ from msgspec import Struct
 
 from verify.arrays import Array
 from verify.contact.state import Records
-from verify.dynamics.validity import Coupling, Margins
 from verify.errors import InputError
 from verify.formatting import one_line
 from verify.problem.beam import Beam
@@ -19,24 +18,16 @@ NONE, NO_EVENTS, NO_CIRCUITS, NAN = np.empty(0), np.empty((0, 4)), np.empty((0, 
 class Statistics(Struct, frozen=True, kw_only=True):
     """Cost of a run of a beam or a chain, and the reason of its end."""
 
-    steps: int
-    """Number of time steps; 0 in closed form."""
-    evaluations: int
-    """Number of evaluations of the surface under the slider, or of the closed form."""
-    step_s: float
-    """Time step, s; 0 without steps."""
-    set_up_s: float
-    """Wall time of modes and tables."""
-    wall_s: float
-    """Wall time of the run itself."""
-    loop_s: float = 0.0
-    """Processor time of the compiled loop."""
+    steps: int  # Number of time steps; 0 in closed form
+    evaluations: int  # Number of evaluations of the surface under the slider, or of the closed form
+    step_s: float  # Time step, s; 0 without steps
+    set_up_s: float  # Wall time of modes and tables
+    wall_s: float  # Wall time of the run itself
+    loop_s: float = 0.0  # Processor time of the compiled loop
     step_change: float | None = None
     """Relative change of the slider's displacement when the step was last halved; None if it was not."""
-    unconverged: int = 0
-    """Number of steps in which the contact forces did not converge."""
-    stopped: str
-    """end, left the beam, came to a step (with its position), or diverged; for a chain with the time."""
+    unconverged: int = 0  # Number of steps in which the contact forces did not converge
+    stopped: str  # end, left the beam, came to a step (with its position), or diverged; for a chain with the time
 
     @property
     def finished(self) -> bool:
@@ -47,44 +38,27 @@ class Statistics(Struct, frozen=True, kw_only=True):
 class EnergyBalance(Struct, frozen=True, kw_only=True):
     """Energies and works over a run, J. Works are positive where they add energy, losses where they remove it."""
 
-    kinetic: float
-    """Gain of kinetic energy of the beam's free modes, and of the energy of inductances."""
-    elastic: float
-    """Gain of elastic energy of the beam's free modes, and of the energy of capacitances."""
-    slider: float
-    """Gain of kinetic energy of sliders and feet, along and across the beam."""
-    contact_elastic: float
-    """Gain of elastic energy of normal and tangential contact springs."""
-    drive_work: float
-    """Work of driving forces and sources; 0 in a steady field, whose drive is not computed."""
-    load_work: float
-    """Work of weight, preload, `slider.external_force` and of the force that prescribes a speed."""
-    tangential_work: float
-    """Work of the tangential motion of the surface on the sliders."""
-    normal_work: float
-    """Work of the normal motion of the surface, dw/dt of its material, on the feet."""
+    kinetic: float  # Gain of kinetic energy of the beam's free modes, and of the energy of inductances
+    elastic: float  # Gain of elastic energy of the beam's free modes, and of the energy of capacitances
+    slider: float  # Gain of kinetic energy of sliders and feet, along and across the beam
+    contact_elastic: float  # Gain of elastic energy of normal and tangential contact springs
+    drive_work: float  # Work of driving forces and sources; 0 in a steady field, whose drive is not computed
+    load_work: float  # Work of weight, preload, `slider.external_force` and of the force that prescribes a speed
+    tangential_work: float  # Work of the tangential motion of the surface on the sliders
+    normal_work: float  # Work of the normal motion of the surface, dw/dt of its material, on the feet
     slope_work: float
     """Work N v w' of the slope along the path of the sliders; it has no counterpart in tangential kinematics, in which
     only friction and `slider.external_force` move a slider."""
-    damping_loss: float
-    """Loss by damping in the beam."""
-    circuit_loss: float = 0.0
-    """Loss in the resistances of circuits."""
+    damping_loss: float  # Loss by damping in the beam
+    circuit_loss: float = 0.0  # Loss in the resistances of circuits
     friction_loss: float
-    contact_loss: float
-    """Loss in contact dashpots and impacts."""
-    friction_on_beam: float
-    """Work of friction on the beam; not in the beam's balance with one-way coupling."""
-    normal_on_beam: float
-    """Work of the normal forces on the beam; not in the beam's balance with one-way coupling."""
-    initial: float
-    """Initial energy of the beam's modes: of the static deflection, or of the earlier run."""
-    created: float
-    """Sum of the work of friction in steps in which it is positive: energy created by the discretisation."""
-    slider_residual: float
-    """Residual of the balance of sliders and feet: work less gains and losses."""
-    residual: float
-    """Larger residual of sliders and, from rest, of the beam: the error of the time integration."""
+    contact_loss: float  # Loss in contact dashpots and impacts
+    friction_on_beam: float  # Work of friction on the beam; not in the beam's balance with one-way coupling
+    normal_on_beam: float  # Work of the normal forces on the beam; not in the beam's balance with one-way coupling
+    initial: float  # Initial energy of the beam's modes: of the static deflection, or of the earlier run
+    created: float  # Sum of the work of friction in steps in which it is positive: energy created by the discretisation
+    slider_residual: float  # Residual of the balance of sliders and feet: work less gains and losses
+    residual: float  # Larger residual of sliders and, from rest, of the beam: the error of the time integration
 
     @property
     def imbalance(self) -> float:
@@ -99,41 +73,60 @@ class EnergyBalance(Struct, frozen=True, kw_only=True):
         return abs(self.residual) / (abs(self.normal_work) + abs(self.tangential_work))
 
 
+class Coupling(Struct, frozen=True, kw_only=True):
+    """Whether sliders and beam are coupled two-way, and the relative error of one-way coupling."""
+
+    two_way: bool
+    friction_size: float | None
+    """Surface speed due to friction mu N over that due to the drive; None without surface motion by the drive."""
+    normal_size: float
+    """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
+    m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
+
+
+class Margins(Struct, frozen=True, kw_only=True):
+    """Validity of a run; each margin is small where its assumption holds."""
+
+    lift_off: float
+    """Largest downward acceleration of the surface over N / m: a free slider lifts off above 1.
+
+    Under a point slider in the run; else the largest along the beam in the steady state."""
+    nonlinearity: float
+    """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain.
+
+    Mean over links and time. A scale, not a bound: the paper's beam at 4276 Hz departs by 0.6 of it at mid-span in the
+    first millisecond from rest."""
+    presliding: float | None = None
+    """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
+    surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
+    contact_step: float = 0.0
+    """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
+
+
 class ContactState(Struct, frozen=True, eq=False):
     """Sliders, feet and points at the end of a run."""
 
-    sliders: Array
-    """(sliders, 2): distance travelled and speed."""
-    feet: Array
-    """(feet, 4): height, its rate, pitch, its rate."""
-    points: Records
-    """(points,), CONTACT."""
+    sliders: Array  # (sliders, 2): distance travelled and speed
+    feet: Array  # (feet, 4): height, its rate, pitch, its rate
+    points: Records  # (points,), CONTACT
 
 
 class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State from which a run continues."""
 
     beam: Beam
-    model: str
-    """Name of the model."""
-    count: int | None
-    """Segments or elements; None for the exact beam."""
-    time: float
-    """Time since the start of the first run, s."""
+    model: str  # Name of the model
+    count: int | None  # Segments or elements; None for the exact beam
+    time: float  # Time since the start of the first run, s
     q: Array
     """(n,), sqrt(kg) m: modal amplitudes with their forced part; with start = 'steady' without the steady field. The
     charges of circuits follow, C."""
-    rates: Array
-    """(n,), dq/dt."""
-    steady: bool = False
-    """Whether the run had start = 'steady'."""
-    starts: tuple[float, ...] = ()
-    """Initial positions of the sliders, m."""
+    rates: Array  # (n,), dq/dt
+    steady: bool = False  # Whether the run had start = 'steady'
+    starts: tuple[float, ...] = ()  # Initial positions of the sliders, m
     sliders: tuple[Slider, ...] = ()
-    contact: ContactState | None = None
-    """State of the sliders; None without slider."""
-    off: str = ""
-    """Message for a slider that left its contact range; else empty."""
+    contact: ContactState | None = None  # State of the sliders; None without slider
+    off: str = ""  # Message for a slider that left its contact range; else empty
     __repr__ = one_line(time="s")
 
     @property

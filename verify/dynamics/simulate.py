@@ -1,27 +1,24 @@
 """Motion of a linear beam: closed form without slider, exact modal steps with sliders in contact."""
 
-from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
 from msgspec.structs import replace
 
 from verify.blas import one_blas_thread
-from verify.dynamics.arguments import Excitation, Keep, Sliders, Step, is_sequence
-from verify.dynamics.excitation import check_no_resonance
+from verify.dynamics.arguments import Excitation, Keep, Sliders, Step
 from verify.dynamics.free_vibration import FreeVibration
-from verify.dynamics.linear_system import Stage, basis_of, stages_from_rest, steady_beam, steady_stage
+from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import END, Motion, Statistics
-from verify.dynamics.slider_run import SliderRun
+from verify.dynamics.slider_run import Progress, SliderRun
+from verify.dynamics.stages import beam_in_time
 from verify.dynamics.validity import margins_of
-from verify.linear.time_basis import TimeBasis
 from verify.problem.beam import Beam
 from verify.settings import Start
 
 CLOSED_FORM_ROWS = 2000
 """Number of times evaluated at once."""
-Progress = Callable[[float], None]
 
 
 @one_blas_thread()
@@ -43,46 +40,25 @@ def simulate(
     """A driven beam from rest or in its steady state, with or without sliders in contact.
 
     Modes advance exactly; the only approximation in a time step is contact, whose friction law is solved for the mean
-    velocity over the step.
+    velocity over the step. Raises InputError for invalid arguments, and for a residual of the energy above 1 %.
 
     Parameters
     ----------
-    beam : Beam
-        Beam with supports and attachments.
-    excitation : Excitation
-        Forces, their frequency and growth, and circuits; the forces may be empty with a slider.
-    duration : float
-        Duration, s.
-    model, count : str, int
-        Model of the beam and its number of segments or elements.
-    modes : int, optional
-        Number of modes of the exact beam, default: 400, under feet 80; discrete models use all their modes.
-    modal_damping : float, optional
-        Damping ratio of every mode; default: by the beam's loss factor.
+    beam, excitation, duration : Beam, Excitation, float
+        Beam, its forces and circuits (forces may be empty with a slider), and duration, s.
+    model, count, modes, modal_damping : str, int, int, float
+        Model, number of segments or elements, number of modes of the exact beam (default: 400, under feet 80; discrete
+        models use all), damping ratio of every mode (default: by the beam's loss factor).
     slider : Slider, PrescribedSlider or sequence, optional
         With two-way coupling the initial state includes the static deflection under the slider, and in the steady state
-        the mass of a bilateral slider. All sliders of a sequence have one coupling and one kind of contact.
+        the mass of a bilateral slider. All sliders of a sequence have one coupling and one kind of contact. The run
+        ends where one leaves the beam (`statistics.stopped`).
     start : {"rest", "steady"}, Motion or FreeVibration, optional
-        Beam at rest, or in its steady state under the forces, or the end of an earlier run, which this run continues
-        from the same initial state, with position and speed of the sliders. Without an earlier run charges of circuits
-        start in equilibrium. Default: "steady" for sliders with contact, else "rest".
-    step : Step or float, optional
-        Time step of a slider, a number in s. By default a two-way coupled point slider is also run with the doubled
-        step (`statistics.step_change`).
-    keep : Keep
-        Positions of the deflection and number of samples.
-    progress : callable
-        Called with the completed fraction.
-
-    Returns
-    -------
-    Motion
-        The motion, until a slider leaves the beam (`statistics.stopped`).
-
-    Raises
-    ------
-    InputError
-        For invalid arguments, and for a residual of the energy balance above 1 %.
+        At rest, in the steady state under the forces (default with contact), or the end of an earlier run, which this
+        one continues with its sliders. Without an earlier run charges of circuits start in equilibrium.
+    step, keep, progress : Step or float, Keep, callable
+        Time step of a slider, a number in s (by default a two-way coupled point slider is also run with the doubled
+        step, `statistics.step_change`); recorded output; called with the completed fraction.
     """
     began = perf_counter()
     request = request_of(
@@ -98,57 +74,31 @@ def simulate(
         step=step,
         keep=keep,
     )
-    basis = None
-    if request.start == "rest" or request.two_way:
-        line = request.sliders[0].line if request.sliders else "spline"
-        ports = [load for one in request.circuits for load in one.loads(beam)]
-        basis = basis_of(beam, model, count, request.modes, line, [*request.forces, *ports])
-    stages = _stages(request, basis)
-    if not request.sliders:
-        motion = _closed_form(request, stages, request.notes(basis))
+    basis, stages = beam_in_time(request)
+    if request.sliders:
+        motion = SliderRun.of(request, basis, stages, request.notes(basis)).converged(progress)
     else:
-        run = SliderRun.of(request, basis, stages, request.notes(basis), sequence=is_sequence(slider))
-        motion = run.converged(progress)
+        motion = _closed_form(request, stages, request.notes(basis))
     statistics = motion.statistics
     return replace(motion, statistics=replace(statistics, set_up_s=perf_counter() - began - statistics.wall_s))
 
 
-def _stages(request: Request, basis: TimeBasis | None) -> list[Stage]:
-    """The stages of a run. Raises InputError for a resonance and for unknown phases."""
-    origin, damping = request.before.time if request.before else 0.0, request.damping_in(basis)
-    if request.start == "rest":
-        assert basis is not None
-        if not request.circuits:
-            check_no_resonance(basis, request.frequency_hz, damping)
-        return stages_from_rest(basis, request.forces, request.omega, damping, request.pieces, origin, request.circuits)
-    case = request.model, request.count, request.beam, request.forces, request.frequency_hz
-    state = steady_beam(*case, request.modal_damping, request.circuits)
-    return [steady_stage(state, request.pieces[-1].steps, origin, basis, damping, request.circuits)]
-
-
 def _closed_form(request: Request, stages: list[Stage], notes: tuple[str, ...]) -> Motion:
     """A beam without slider: all samples in closed form."""
-    began, first = perf_counter(), stages[0]
-    whole = request.continued(first) if request.before else np.zeros(len(first.rows.rates), dtype=complex)
-    parts = [first.deflection(first.free(whole), np.zeros(1), request.points)]
-    for stage in stages:
-        z = stage.free(whole)
+    began, z = perf_counter(), request.released(stages[0])
+    outputs = [stages[0].deflection(z, np.zeros(1), request.points)]
+    for i, stage in enumerate(stages):
+        z = stage.free(z) if i else z
         blocks = np.array_split(stage.sample_times, len(stage.sample_times) // CLOSED_FORM_ROWS + 1)
-        parts += [stage.deflection(z, block, request.points) for block in blocks]
-        whole = stage.whole(stage.rows.after(z, stage.duration), stage.duration)
-    times = np.concatenate([[first.origin], *(stage.origin + stage.sample_times for stage in stages)])
-    margins, seconds = margins_of(request, stages[-1]), perf_counter() - began
-    deflection, voltages, charges = request.split(np.concatenate(parts))
-    return Motion(
-        model=request.model,
-        count=request.count,
-        times=times,
-        points=request.points,
-        deflection=deflection,
-        voltages=voltages,
-        charges=charges,
-        margins=margins,
+        outputs += [stage.deflection(z, block, request.points) for block in blocks]
+        z = stage.whole(stage.rows.after(z, stage.duration), stage.duration)
+    evaluations, time = sum(map(len, outputs)), float(stage.origin + stage.sample_times[-1])
+    seconds = perf_counter() - began
+    return request.motion(
+        stages,
+        np.concatenate(outputs),
+        margins=margins_of(request, stage),
         notes=notes,
-        statistics=Statistics(steps=0, evaluations=len(times), step_s=0.0, set_up_s=0.0, wall_s=seconds, stopped=END),
-        end=request.end(stages[-1], whole, float(times[-1])),
+        statistics=Statistics(steps=0, evaluations=evaluations, step_s=0.0, set_up_s=0.0, wall_s=seconds, stopped=END),
+        end=request.end(stage, z, time),
     )

@@ -16,7 +16,7 @@ from verify.dynamics.contact_assembly import assemble, contact_rate
 from verify.dynamics.initial_state import set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
-from verify.dynamics.result import END, ContactState, EnergyBalance, Motion, Statistics
+from verify.dynamics.result import END, ContactState, Coupling, EnergyBalance, Margins, Motion, Statistics
 from verify.dynamics.state import SAMPLE
 from verify.dynamics.stepping import Assembly, Run, of_all, run_stages
 from verify.errors import InputError
@@ -40,85 +40,45 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Sliders on a beam before the first step."""
 
     request: Request
-    basis: TimeBasis | None
-    """None without free modes."""
+    basis: TimeBasis | None  # None without free modes
     stages: list[Stage]
-    assembly: Assembly
-    """Sliders without transverse motion, feet at height 0; a run advances a copy."""
-    coupling: validity.Coupling
-    margins: validity.Margins
+    assembly: Assembly  # Sliders without transverse motion, feet at height 0; a run advances a copy
+    coupling: Coupling
+    margins: Margins
     notes: tuple[str, ...]
-    sequence: bool
-    """Whether the result has an axis of sliders."""
 
     @classmethod
-    def of(
-        cls, request: Request, basis: TimeBasis | None, stages: list[Stage], notes: tuple[str, ...], sequence: bool
-    ) -> "SliderRun":
+    def of(cls, request: Request, basis: TimeBasis | None, stages: list[Stage], notes: tuple[str, ...]) -> "SliderRun":
         """A run with time steps that resolve motion and contact. Raises InputError."""
-        beam, hertz, starts = request.beam, request.frequency_hz, request.starts
-        stages = [stage.within(contact_range(beam, starts[0])) for stage in stages]
-        if basis is not None and request.start == "rest":
-            receptance = validity.modal_receptance(basis, request.omega, request.damping_in(basis))
+        stages = [stage.within(contact_range(request.beam, request.starts[0])) for stage in stages]
+        assembly, free = assemble(request.beam, request.prescribed, request.starts), basis if request.two_way else None
+        coupling, margins = validity.coupling_of(request, basis, stages[-1]), validity.margins_of(request, stages[-1])
+        if request.feet:
+            rate = contact_rate(assembly, request.sliders, free)
+            stages = step_control.feet_stages(request, stages, rate, float(free.omegas.max()) if free else 0.0)
+            slips, phase = validity.presliding(request), rate * stages[-1].steps.dt
+            margins = replace(margins, presliding=slips, contact_step=phase)
         else:
-            receptance = validity.field_receptance(beam, request.model, request.count, hertz, request.modal_damping)
-        run = cls(
+            stages, more = step_control.point_stages(request, stages)
+            notes += more
+        check_steps(sum(stage.duration for stage in stages), stages[-1].steps.dt)
+        return cls(
             request=request,
             basis=basis,
             stages=stages,
-            assembly=assemble(beam, request.prescribed, starts),
-            coupling=validity.coupling_of(beam, request.sliders, starts, stages[-1], receptance),
-            margins=validity.margins_of(request, stages[-1]),
+            assembly=assembly,
+            coupling=coupling,
+            margins=margins,
             notes=notes,
-            sequence=sequence,
         )
-        run = run._with_feet_steps() if request.feet else run._with_point_steps()
-        check_steps(sum(stage.duration for stage in run.stages), run.stages[-1].steps.dt)
-        return run
-
-    def _with_feet_steps(self) -> "SliderRun":
-        request, basis = self.request, self.basis if self.request.two_way else None
-        rate, fastest = contact_rate(self.assembly, request.sliders, basis), float(basis.omegas.max()) if basis else 0.0
-        step = step_control.feet_step(self.stages[0].steps.dt, rate, fastest, request.step)
-        stages, slips = step_control.stepped(self.stages, step), validity.presliding(request)
-        margins = replace(self.margins, presliding=slips, contact_step=rate * stages[-1].steps.dt)
-        return replace(self, stages=stages, margins=margins)
-
-    def _with_point_steps(self) -> "SliderRun":
-        request, stages, length, rate = self.request, self.stages, self.request.beam.length, 0.0
-        z, longest = self._unloaded(), max(stage.steps.dt for stage in stages)
-        if request.step is not None:
-            share = step_control.unresolved(stages, z, length, longest)
-            enough = step_control.point_step(stages, z, length, longest, 0.0)
-            note = f"step: {100 * share:.2g} % of the surface speed is not resolved, give at most {enough:.2g} s"
-            return replace(self, notes=(*self.notes, *(note,) * (enough < longest)))
-        if request.two_way:
-            rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
-            rate = max(rates, default=0.0)
-            if request.sliders[0].normal == "bilateral":
-                longest *= 0.5  # the contact excites waves
-        step = step_control.point_step(stages, z, length, longest, rate)
-        return replace(self, stages=step_control.stepped(stages, step))
-
-    def _unloaded(self) -> ComplexArray:
-        """Free rows at the start, (n,), without deflection under the sliders. Raises InputError."""
-        stage = self.stages[0]
-        at_rest = np.zeros(len(stage.rows.rates), dtype=complex)
-        return stage.free(self.request.continued(stage) if self.request.before else at_rest)
 
     def _initial(self) -> tuple[Assembly, ComplexArray]:
         """Sliders in equilibrium or in the state of an earlier run, and free rows, (n,). Raises InputError."""
         request, basis, stage, before = self.request, self.basis, self.stages[0], self.request.before
-        assembly, z = self.assembly.copy(), self._unloaded()
-        dt = stage.steps.dt if assembly.springs else 0.0
+        assembly, z = self.assembly.copy(), request.released(stage)
         rise: Array | float = 0.0
-
-        def released(q: Array, seconds: float) -> Array:
-            rows = stage.rows
-            return rows.state(rows.after(rows.of_state(q, 0.0 * q), seconds))[0][: len(q)] if dt else q
-
         if basis and assembly.kind.normal_two_way:
-            still, rise = static_deflection(basis, assembly, released, dt)
+            still, rise = static_deflection(basis, assembly, stage)
             if before is None:
                 z = stage.rows.of_state(still, 0.0 * still)
                 if stage.forced is None and assembly.kind.normal_law == BILATERAL:
@@ -147,10 +107,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """
         request, stages, (assembly, z) = self.request, self.stages, self._initial()
         if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
-            return self._checked(self.run(stages, assembly, z, progress))
+            return step_control.checked(self.run(stages, assembly, z, progress), request, stages)
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
-        rough = step_control.stepped(stages, 2.0 * dt, closer)
+        rough = [stage.stepped(2.0 * dt, closer) for stage in stages]
         close = [one.stepped(0.5 * of.steps.dt, closer) for one, of in zip(stages, rough, strict=True)]  # samples fit
         coarse = self.run(rough, assembly.copy(), z, lambda part: progress(part / 3.0))
         fine = self.run(close, assembly, z, lambda part: progress((1.0 + 2.0 * part) / 3.0))
@@ -164,64 +124,51 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         )
         kept: dict[str, Any] = {name: getattr(fine, name)[::closer] for name in SAMPLED}
         notes = (*fine.notes, *(note,) * (moved > step_control.CONVERGED))
-        return self._checked(replace(fine, statistics=statistics, notes=notes, **kept))
-
-    def _checked(self, motion: Motion) -> Motion:
-        """A motion with a note on its energy balance. Raises InputError for a residual above its tolerance."""
-        if motion.energy is None:
-            return motion
-        statistics, request, resolved = motion.statistics, self.request, True
-        dt = statistics.step_s
-        if request.step is not None:
-            share = step_control.unresolved(self.stages, self._unloaded(), request.beam.length, dt)
-            resolved = share <= step_control.UNRESOLVED
-        notes = step_control.check_energy(motion, request.frequency_hz, request.feet, resolved)
-        if statistics.unconverged:
-            notes += (f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps",)
-        return replace(motion, notes=(*motion.notes, *notes))
+        motion = replace(fine, statistics=statistics, notes=notes, **kept)
+        return step_control.checked(motion, request, stages)
 
     def run(self, stages: list[Stage], assembly: Assembly, z: ComplexArray, progress: Progress) -> Motion:
         """One run through these stages from an initial state of the assembly, which is advanced, and of free rows."""
-        began, request = perf_counter(), self.request
-        kinetic = self._kinetic(assembly)
-        recorded, deflection, beam, accounts = self._marched(stages, z, assembly, progress)
-        gains = self._kinetic(assembly) - kinetic, float(recorded.journal.sums["stored"].sum()), *beam
-        journal, sums, n = recorded.journal, recorded.journal.sums, len(recorded.journal.samples)
-        journal.deflections[0] = deflection[0]
+        began, request, kinetic = perf_counter(), self.request, self._kinetic(assembly)
+        recorded = self._marched(stages, z, assembly, progress)
+        journal, sums, gained = recorded.journal, recorded.journal.sums, self._kinetic(assembly) - kinetic
         if request.start == "rest" and request.before is None:
             still = np.array([slider.speed == 0.0 for slider in request.sliders])
             journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+        offsets = np.array(request.starts) - request.starts[0]
         mean = 1.0 / recorded.seconds if recorded.seconds > 0.0 else float("nan")
-        deflections, voltages, charges = request.split(journal.deflections)
+        notes, kept = list(self.notes), len(recorded.events)
+        if recorded.n_events > kept:
+            notes.append(f"events: the first {kept} of {recorded.n_events}")
+        if recorded.left:
+            notes.append("energy: work of the drive and losses of the beam until the load has left it")
+        margins, fall = self.margins, float(sums["max_fall"].max())
+        if not request.feet:
+            margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
 
         def each(values: Array) -> Any:
             """Values of all sliders of a sequence, or of the single slider."""
-            own = np.array(values if self.sequence else values[..., 0], order="C")
+            own = np.array(values if request.sequence else values[..., 0], order="C")
             return own if own.ndim else float(own)
 
-        return Motion(
-            model=request.model,
-            count=request.count,
-            times=np.concatenate([[stages[0].origin], *(s.origin + s.sample_times for s in stages)])[:n],
-            points=request.points,
-            deflection=deflections,
-            voltages=voltages,
-            charges=charges,
-            slider=request.sliders if self.sequence else request.sliders[0],
-            start=request.starts if self.sequence else request.starts[0],
+        return request.motion(
+            stages,
+            journal.deflections,
+            slider=request.sliders if request.sequence else request.sliders[0],
+            start=request.starts if request.sequence else request.starts[0],
             **{name: each(journal.samples[name]) for name in SAMPLES},
             height=journal.heights[:, :, 0],
             pitch=journal.heights[:, :, 1],
             pressures=journal.pressures,
-            point_offsets=self._point_offsets(assembly),
+            point_offsets=assembly.points["offset"] - offsets[assembly.points["slider"]],
             events=recorded.events,
             mean_friction=each(mean * sums["friction_time"]),
             largest_friction=each(sums["max_friction"].copy()),
             mean_surface_speed=each(mean * sums["surface_time"]),
             coupling=self.coupling,
-            margins=self._margins(float(sums["max_fall"].max())),
-            energy=_balance(recorded, gains, assembly.kind.two_way, accounts),
-            notes=self._notes(recorded),
+            margins=margins,
+            energy=_balance(recorded, gained, assembly.kind.two_way),
+            notes=tuple(notes),
             statistics=_statistics(recorded, stages[-1].steps.dt, perf_counter() - began),
             end=request.end(
                 stages[-1],
@@ -234,40 +181,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             ),
         )
 
-    def _margins(self, fall: float) -> validity.Margins:
-        """Margins with the largest downward acceleration of the surface, m/s^2, of points without feet."""
-        if self.request.feet:
-            return self.margins
-        return replace(self.margins, lift_off=fall / self.request.gravity if self.request.gravity else inf)
-
-    def _notes(self, recorded: Run) -> tuple[str, ...]:
-        """Notes, with one on events beyond the capacity and one on a load that has left the beam."""
-        lost = (f"events: the first {len(recorded.events)} of {recorded.n_events}",)
-        left = ("energy: work of the drive and losses of the beam until the load has left it",)
-        return (*self.notes, *lost * (recorded.n_events > len(recorded.events)), *left * recorded.left)
-
-    def _point_offsets(self, assembly: Assembly) -> Array:
-        """Positions of the points relative to their slider, (points,), m."""
-        offsets = np.array(self.request.starts) - self.request.starts[0]
-        return np.asarray(assembly.points["offset"] - offsets[assembly.points["slider"]])
-
-    def _marched(
-        self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress
-    ) -> tuple[Run, Array, tuple[float, float, float], bool]:
-        """March beam and sliders to the end.
-
-        Returns the run, the initial deflection (1, p), m, with readings, the beam's gains of kinetic and elastic energy
-        and its initial energy, J, and whether the work of the drive and the loss in the beam are computed.
-        """
-        n_steps, points = sum(stage.steps.n for stage in stages), self.request.points
+    def _marched(self, stages: list[Stage], z: ComplexArray, assembly: Assembly, progress: Progress) -> Run:
+        """Beam and sliders at the end of their march."""
+        n_steps, request = sum(stage.steps.n for stage in stages), self.request
         # impacts do not act on the beam: its balance is exact
-        rest = self.request.start == "rest" and assembly.restitution is None
-        kinetic, elastic = stages[0].rows.energies(stages[0].whole(z, 0.0))
-        deflection = stages[0].deflection(z, np.zeros(1), points)
-        recorded = run_stages(stages, z, assembly, points, accounts=rest, progress=lambda n: progress(n / n_steps))
-        after = stages[-1].rows.energies(recorded.z)
-        gains = after[0] - kinetic, after[1] - elastic, kinetic + elastic
-        return recorded, deflection, gains, rest and not recorded.left
+        accounts = request.start == "rest" and assembly.restitution is None
+        given = stages, z, assembly, request.points
+        return run_stages(*given, accounts=accounts, progress=lambda n: progress(n / n_steps))
 
     def _kinetic(self, assembly: Assembly) -> float:
         """Kinetic energy of sliders and feet, along and across the beam, J."""
@@ -300,25 +220,25 @@ def _statistics(recorded: Run, dt: float, wall: float) -> Statistics:
         set_up_s=recorded.set_up_s,
         wall_s=wall,
         loop_s=recorded.loop_s,
-        unconverged=int(recorded.balance["unconverged"]),
+        unconverged=int(recorded.journal.balance["unconverged"][0]),
         stopped=recorded.stopped,
     )
 
 
-def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: bool) -> EnergyBalance:
-    """The energy balance; `gains` of sliders, springs, modes (kinetic, elastic), and initial energy of the modes, J."""
-    sums, (slider, stored, kinetic, elastic, initial) = recorded.journal.sums, gains
-    works, balance = of_all(sums), recorded.balance
+def _balance(recorded: Run, gained: float, two_way: bool) -> EnergyBalance:
+    """The energy balance with the gain of kinetic energy of sliders and feet, J."""
+    works, balance = of_all(recorded.journal.sums), of_all(recorded.journal.balance)
+    kinetic, elastic, initial = recorded.gains
     load = works["external_work"] + works["load_work"]
     work = works["normal_work"] + works["tangential_work"] + works["slope_work"] + load
-    residual = work - works["friction_loss"] - works["contact_loss"] - slider - stored
+    residual = work - works["friction_loss"] - works["contact_loss"] - gained - works["stored"]
     contact = (works["friction_on_beam"] + works["normal_on_beam"]) * two_way
     beam = balance["driven"] + contact - balance["lost"] - kinetic - elastic
     return EnergyBalance(
         kinetic=kinetic,
         elastic=elastic,
-        slider=slider,
-        contact_elastic=stored,
+        slider=gained,
+        contact_elastic=works["stored"],
         drive_work=balance["driven"],
         load_work=load,
         damping_loss=balance["lost"] - balance["resisted"],
@@ -327,5 +247,5 @@ def _balance(recorded: Run, gains: tuple[float, ...], two_way: bool, accounts: b
         initial=initial,
         created=balance["created"],
         slider_residual=residual,
-        residual=beam if accounts and abs(beam) > abs(residual) else residual,
+        residual=beam if recorded.accounts and abs(beam) > abs(residual) else residual,
     )

@@ -24,17 +24,14 @@ class Rows(NamedTuple):
 
     z_re: Array
     z_im: Array
-    rate_re: Array
-    """lambda, 1/s"""
+    rate_re: Array  # lambda, 1/s
     rate_im: Array
-    half_re: Array
-    """e^{lambda dt/2}"""
+    half_re: Array  # e^{lambda dt/2}
     half_im: Array
     gain_re: Array
     """G = c (e^{lambda dt} - 1)/lambda: what a unit force that is constant over the step adds to z by its end."""
     gain_im: Array
-    end_re: Array
-    """What it adds to the rate, lambda G."""
+    end_re: Array  # What it adds to the rate, lambda G
     end_im: Array
     coarse: Array
     """1 where the step does not resolve the row: the mean rate of the step, G/dt of a force, stands for its end."""
@@ -43,35 +40,26 @@ class Rows(NamedTuple):
 class Harmonic(NamedTuple):
     """Time of the drive."""
 
-    omega: float
-    """Angular frequency, rad/s."""
-    origin: float
-    """Seconds before the stage."""
-    unit: float
-    """T of the powers of time, s."""
+    omega: float  # Angular frequency, rad/s
+    origin: float  # Seconds before the stage
+    unit: float  # T of the powers of time, s
 
 
 class Surface(NamedTuple):
     """Columns of the surface on pieces of the beam."""
 
-    table: Array
-    """(pieces, degree + 1, columns), coefficients of the shapes."""
-    edges: Array
-    """(pieces + 1,), m from the first slider's start."""
-    factors: Array
-    """(4, 2, columns), factors and their rates at the instants of the step."""
-    polynomials: Array
-    """(pieces, 2, degree + 1), deflection and its rate at an instant."""
-    stamps: Indices
-    """(pieces,), marks of the instants of `polynomials`."""
+    table: Array  # (pieces, degree + 1, columns), coefficients of the shapes
+    edges: Array  # (pieces + 1,), m from the first slider's start
+    factors: Array  # (4, 2, columns), factors and their rates at the instants of the step
+    polynomials: Array  # (pieces, 2, degree + 1), deflection and its rate at an instant
+    stamps: Indices  # (pieces,), marks of the instants of `polynomials`
 
 
 class Beam(NamedTuple):
     """A beam that advances by its rows and its drive."""
 
     rows: Rows
-    n_complex: int
-    """Number of rows with a complex shape, the last ones."""
+    n_complex: int  # Number of rows with a complex shape, the last ones
     harmonic: Harmonic
     surface: Surface
 
@@ -83,12 +71,9 @@ class Accounts(NamedTuple):
     forced: Array
     """(drive columns, n): coordinates over the drive's factors, added to those of the rows themselves; with circuits
     over the factors of all columns, (columns, coordinates)."""
-    loads: Array
-    """(4, coordinates): generalised force phasors, real and imaginary, damping, and 1 of a circuit."""
-    growth: Array
-    """Envelope of the forces, ascending powers of t/T."""
-    rates: Array
-    """(coordinates,), working space."""
+    loads: Array  # (4, coordinates): generalised force phasors, real and imaginary, damping, and 1 of a circuit
+    growth: Array  # Envelope of the forces, ascending powers of t/T
+    rates: Array  # (coordinates,), working space
 
 
 SUMS = record(
@@ -117,25 +102,14 @@ PROGRESS = record(integers="step samples events")
 class Journal(NamedTuple):
     """What a run records."""
 
-    progress: Records
-    """(1,), PROGRESS"""
-    samples: Records
-    """(samples, sliders), SAMPLE"""
-    heights: Array
-    """(samples, feet, 2), heights and pitches of the feet."""
-    pressures: Array
-    """(samples, points), normal forces of the points."""
-    deflections: Array
-    """(samples, places), deflection and readings."""
-    places: Array
-    """(places, columns), the columns at the places of the deflection."""
-    events: Array
-    """(capacity, 4), rows (time, kind, point, distance)."""
-    sums: Records
-    """(sliders,), SUMS"""
-    sums_before: Records
-    """(sliders,), SUMS at the last sample."""
-    balance: Records
-    """(1,), BALANCE"""
-    slider_of_foot: Indices
-    """(feet,)"""
+    progress: Records  # (1,), PROGRESS
+    samples: Records  # (samples, sliders), SAMPLE
+    heights: Array  # (samples, feet, 2), heights and pitches of the feet
+    pressures: Array  # (samples, points), normal forces of the points
+    deflections: Array  # (samples, places), deflection and readings
+    places: Array  # (places, columns), the columns at the places of the deflection
+    events: Array  # (capacity, 4), rows (time, kind, point, distance)
+    sums: Records  # (sliders,), SUMS
+    sums_before: Records  # (sliders,), SUMS at the last sample
+    balance: Records  # (1,), BALANCE
+    slider_of_foot: Indices  # (feet,)

@@ -1,13 +1,14 @@
 """Time steps of sliders: resolution of the motion, step doubling, energy check."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import ceil, inf
 
 import numpy as np
+from msgspec.structs import replace
 
-from verify.arrays import ComplexArray
 from verify.dynamics.linear_system import Stage
+from verify.dynamics.request import Request
 from verify.dynamics.result import Motion
 from verify.errors import InputError
 
@@ -34,20 +35,20 @@ ROUNDINGS = 8.0
 """Rounding of the works of a step, in units of that of the elastic energy of contact: up to 1.1 of a clasp at rest."""
 
 
-def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: float) -> float:
-    """Fraction of the surface speed, rms, that steps of dt do not resolve for free rows z.
+def unresolved(request: Request, stages: Sequence[Stage]) -> Callable[[float], float]:
+    """Steps of dt, s -> fraction of the surface speed, rms, of a point slider's run that they do not resolve.
 
     Simpson's rule over a step has the error (omega dt / 2)^4 / 180 in the mean of a cosine; where this exceeds 1 a mode
     counts as unresolved. Modal speeds, up to a common factor, are omega |q| n pi / L, the largest of all stages: n pi/L
     is the slope of the nth mode over its deflection, whose mean square on a uniform beam is 1/mass.
     """
-    if not len(z):
-        return 0.0
-    starts, last, turning = [z], stages[-1], abs(stages[0].rows.rates.imag)
+    starts, last, length = [request.released(stages[0])], stages[-1], request.beam.length
+    if not (n := len(starts[0])):
+        return lambda dt: 0.0
     for before, stage in pairwise(stages):
         end = before.whole(before.rows.after(starts[-1], before.duration), before.duration)
         starts.append(stage.free(end))
-    wavenumbers = np.pi / length * np.arange(1.0, len(z) + 1.0)
+    wavenumbers, turning = np.pi / length * np.arange(1.0, n + 1.0), abs(last.rows.rates.imag)
     free = np.abs(starts).max(axis=0) * wavenumbers * turning
     if last.forced is not None:
         driven = np.linalg.norm(abs(last.forced.forward + last.forced.backward)[:, 0] * wavenumbers)
@@ -55,40 +56,49 @@ def unresolved(stages: Sequence[Stage], z: ComplexArray, length: float, dt: floa
         x = np.linspace(0.0, length, 129)
         first = np.sqrt((abs(last.shapes(x, 0)[0]) ** 2).mean())
         driven = np.sqrt((abs(last.drive_shapes(x, 1)[0]) ** 2).mean()) / first
-    missed = free * np.minimum((0.5 * turning * dt) ** 4 / 180.0, 1.0)
     total = np.hypot(last.omega * driven, np.linalg.norm(free))
-    return float(np.linalg.norm(missed) / total) if total else 0.0
+
+    def share(dt: float) -> float:
+        missed = free * np.minimum((0.5 * turning * dt) ** 4 / 180.0, 1.0)
+        return float(np.linalg.norm(missed) / total) if total else 0.0
+
+    return share
 
 
-def point_step(stages: Sequence[Stage], z: ComplexArray, length: float, longest: float, rate: float) -> float:
-    """The largest of `longest`, its half, its quarter, ... that resolves a point slider's motion, s.
+def point_stages(request: Request, stages: Sequence[Stage]) -> tuple[list[Stage], tuple[str, ...]]:
+    """Stages of point sliders, and a note on a given step that does not resolve their motion.
 
-    `rate` is K mu N / m of a two-way coupled slider, infinite for Coulomb's law, 0 for one-way coupling. Where the
+    Without one the step is the largest of the drive, its half, its quarter, ... that does. Where a two-way coupled
     slider may stick, the phase of the highest mode per step is at most pi.
     """
+    share, rate, longest = unresolved(request, stages), 0.0, max(stage.steps.dt for stage in stages)
     fastest = float(abs(stages[0].rows.rates.imag).max(initial=0.0))
-    while unresolved(stages, z, length, longest) > UNRESOLVED:
-        longest *= 0.5
-    while fastest * longest > np.pi and rate * longest > STICKY:
-        longest *= 0.5
-    return longest
+    if request.step is None and request.two_way:  # K mu N / m, infinite for Coulomb's law
+        rates = ((s.steepness or inf) * s.mu * s.normal_force / s.mass for s in request.sliders if s.mu)
+        rate = max(rates, default=0.0)
+        if request.sliders[0].normal == "bilateral":
+            longest *= 0.5  # the contact excites waves
+    step = longest
+    while share(step) > UNRESOLVED or (fastest * step > np.pi and rate * step > STICKY):
+        step *= 0.5
+    if request.step is None:
+        return [stage.stepped(step) for stage in stages], ()
+    note = f"step: {100 * share(longest):.2g} % of the surface speed is not resolved, give at most {step:.2g} s"
+    return list(stages), (note,) * (step < longest)
 
 
-def feet_step(longest: float, contact: float, fastest: float, step: float | None) -> float:
-    """Step of sliders on springs, s: `step`, or for None one that resolves contact and highest mode.
+def feet_stages(request: Request, stages: Sequence[Stage], contact: float, fastest: float) -> list[Stage]:
+    """Stages of sliders on springs in steps that resolve their contact and the highest mode, rad/s, or in given ones.
 
     Raises InputError for an unstable step.
     """
+    step = request.step
     if step is None:
-        return min(longest, CONTACT_RADIANS / contact if contact else inf, MODE_RADIANS / fastest if fastest else inf)
-    if contact * step >= UNSTABLE:
+        limits = (CONTACT_RADIANS, contact), (MODE_RADIANS, fastest)
+        step = min([stages[0].steps.dt, *(radians / omega for radians, omega in limits if omega)])
+    elif contact * step >= UNSTABLE:
         raise InputError(f"step = {step!r} s is unstable: give at most {CONTACT_RADIANS / contact:.3g} s")
-    return step
-
-
-def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage]:
-    """All stages in steps no longer than `step`, with `closer` times as many samples."""
-    return [stage.stepped(step, closer) for stage in stages]
+    return [stage.stepped(step) for stage in stages]
 
 
 def change(coarse: Motion, fine: Motion) -> float:
@@ -125,24 +135,31 @@ def exchanged(motion: Motion) -> float:
     return float(np.maximum(size, rounding / MOST_GAIN))  # not a number where the run is not
 
 
-def check_energy(motion: Motion, frequency_hz: float, feet: bool, resolved: bool) -> tuple[str, ...]:
-    """Raise InputError if friction creates, or the balance misses, more than 1 % of the energy exchanged.
+def checked(motion: Motion, request: Request, stages: Sequence[Stage]) -> Motion:
+    """A motion with notes on its steps. Raises InputError if the energy misses more than 1 % of that exchanged.
 
-    Notes report the residual of feet, whose springs are of order 2 in the step, and of a beam with unresolved motion:
-    modes advance exactly, but the work of the drive and the loss in the modes are quadratures.
+    That is the energy that friction creates and the residual of the balance. Notes report the residual of feet, whose
+    springs are of order 2 in the step, and of a beam with unresolved motion: modes advance exactly, but the work of the
+    drive and the loss in the modes are quadratures.
     """
-    energy, dt, scale = motion.energy, motion.statistics.step_s, exchanged(motion)
+    energy, statistics, dt, scale = motion.energy, motion.statistics, motion.statistics.step_s, exchanged(motion)
     assert energy is not None
     if not np.isfinite(scale):
         raise InputError(f"step = {dt:.3g} s: the energy overflows; give smaller forces or a lighter slider")
+    resolved = request.step is None or unresolved(request, stages)(dt) <= UNRESOLVED
     rest = energy.residual if resolved else energy.slider_residual
-    missed = max(-energy.friction_loss, energy.created, 0.0 if feet else abs(rest))
+    missed = max(-energy.friction_loss, energy.created, 0.0 if request.feet else abs(rest))
     if missed > MOST_GAIN * scale > 0.0:
         raise InputError(
             f"step = {dt:.3g} s: the energy balance misses {missed:.3g} J of {scale:.3g} J exchanged; give a step "
-            f"of at most {0.25 * dt:.2g} s ({ceil(4.0 / (dt * frequency_hz))} steps per period)"
+            f"of at most {0.25 * dt:.2g} s ({ceil(4.0 / (dt * request.frequency_hz))} steps per period)"
         )
-    share = abs(energy.residual) / scale if scale else 0.0
-    what = "not converged, the energy balance" if feet or resolved else "does not resolve the drive, its work"
-    note = f"step: {what} misses {100.0 * share:.2g} % of the energy exchanged"
-    return (note,) * (share > MOST_GAIN)
+    notes, share = list(motion.notes), abs(energy.residual) / scale if scale else 0.0
+    if share > MOST_GAIN:
+        what = (
+            "not converged, the energy balance" if request.feet or resolved else "does not resolve the drive, its work"
+        )
+        notes.append(f"step: {what} misses {100.0 * share:.2g} % of the energy exchanged")
+    if statistics.unconverged:
+        notes.append(f"step: contact forces did not converge in {statistics.unconverged} of {statistics.steps} steps")
+    return replace(motion, notes=tuple(notes))

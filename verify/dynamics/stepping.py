@@ -9,22 +9,8 @@ from msgspec.structs import replace
 
 from verify.arrays import Array, ComplexArray
 from verify.contact.state import SPRING, Bodies, Kind, Records, Response
+from verify.dynamics import state
 from verify.dynamics.linear_system import Stage
-from verify.dynamics.state import (
-    BALANCE,
-    CHATTERS,
-    DONE,
-    NOT_FINITE,
-    PROGRESS,
-    SAMPLE,
-    SUMS,
-    Accounts,
-    Beam,
-    Harmonic,
-    Journal,
-    Rows,
-    Surface,
-)
 
 CHUNK = 20_000
 """Number of steps between checks for an interrupt."""
@@ -47,34 +33,21 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
 
     start: float
     """Initial position of the first slider, m, the origin of distances and edges, so that nanometres are exact."""
-    bodies: Bodies
+    sliders: Records  # (sliders,)
+    feet: Records  # (feet,), empty for points without feet
+    points: Records  # (points,), static, in the order of the sliders
+    contacts: Records  # (points,), state of the points
     kind: Kind
     moving_load: bool = False
     """Prescribed speed without friction: the run continues without contact after a point has left the beam."""
-    at_rest: bool = False
-    """Whether the state is an equilibrium, with depths of the middle of the first step."""
+    at_rest: bool = False  # Whether the state is an equilibrium, with depths of the middle of the first step
     restitution: float | None = None
     """Coefficient of hard contact (`impact`): one point with a foot, one-way; None for the other laws."""
 
     @property
-    def sliders(self) -> Records:
-        """Sliders, (sliders,)."""
-        return self.bodies.sliders
-
-    @property
-    def feet(self) -> Records:
-        """Feet, (feet,); empty for points without feet."""
-        return self.bodies.feet
-
-    @property
-    def points(self) -> Records:
-        """Points, static, (points,), in the order of the sliders."""
-        return self.bodies.points
-
-    @property
-    def contacts(self) -> Records:
-        """State of the points, (points,)."""
-        return self.bodies.contacts
+    def bodies(self) -> Bodies:
+        """The arrays as the kernels advance them."""
+        return Bodies(self.sliders, self.feet, self.points, self.contacts)
 
     @property
     def springs(self) -> bool:
@@ -83,7 +56,7 @@ class Assembly(msgspec.Struct, eq=False, kw_only=True):
 
     def copy(self) -> "Assembly":
         """The same state in arrays of its own, to be advanced."""
-        return replace(self, bodies=Bodies(*(array.copy() for array in self.bodies)))
+        return replace(self, **{name: array.copy() for name, array in self.bodies._asdict().items()})
 
 
 def run_stages(
@@ -101,13 +74,18 @@ def run_stages(
     `places`, (p,), m; `accounts`: integrate the work of the drive and the loss of the modes; `progress` is called with
     the number of completed steps.
     """
-    samples = sum(stage.steps.n // stage.steps.every for stage in stages)
-    run = Run(assembly, samples, len(places) + stages[0].readings.shape[1])
+    samples, first = sum(stage.steps.n // stage.steps.every for stage in stages), stages[0]
+    run = Run(assembly, samples, len(places) + first.readings.shape[1])
+    deflection = first.deflection(z, np.zeros(1), places)
+    before = first.rows.energies(first.whole(z, 0.0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.free(z)
         z = stage.whole(run.stage(stage, z, places, accounts, progress), float(run.step * stage.steps.dt))
         if run.stopped != "end":
             break
+    after = first.rows.energies(z)
+    run.gains, run.accounts = (after[0] - before[0], after[1] - before[1], sum(before)), accounts and not run.left
+    run.journal.deflections[0] = deflection
     return run.recorded(z, stage)
 
 
@@ -120,17 +98,17 @@ class Run:
         if feet:
             owners[assembly.points["foot"]] = assembly.points["slider"]
         self.assembly = assembly
-        self.journal = Journal(
-            progress=np.zeros(1, PROGRESS),
-            samples=np.zeros((samples + 1, sliders), SAMPLE),
+        self.journal = state.Journal(
+            progress=np.zeros(1, state.PROGRESS),
+            samples=np.zeros((samples + 1, sliders), state.SAMPLE),
             heights=np.zeros((samples + 1, feet, 2)),
             pressures=np.zeros((samples + 1, points)),
             deflections=np.zeros((samples + 1, outputs)),
             places=np.zeros((0, 0)),
             events=np.zeros((EVENTS, 4)),
-            sums=np.zeros(sliders, SUMS),
-            sums_before=np.zeros(sliders, SUMS),
-            balance=np.zeros(1, BALANCE),
+            sums=np.zeros(sliders, state.SUMS),
+            sums_before=np.zeros(sliders, state.SUMS),
+            balance=np.zeros(1, state.BALANCE),
             slider_of_foot=owners,
         )
         self.n_steps, self.seconds, self.loop_s, self.set_up_s, self.reach = 0, 0.0, 0.0, 0.0, REACH
@@ -139,6 +117,9 @@ class Run:
         self.stopped, self.left, self.end, self.z = "end", False, 0.0, np.empty(0, dtype=complex)
         """"end", a message of `Stage.beyond`, "diverged" or "chatters"; whether a moving load has left the beam; end
         time, s; total state of the rows then."""
+        self.gains, self.accounts = (0.0, 0.0, 0.0), False
+        """Gains of kinetic and elastic energy of the beam, and its initial energy, J; whether the work of the drive
+        and the loss in the beam are computed."""
 
     @property
     def step(self) -> int:
@@ -146,14 +127,9 @@ class Run:
         return int(self.journal.progress["step"][0])
 
     @property
-    def balance(self) -> dict[str, float]:
-        """The record BALANCE."""
-        return of_all(self.journal.balance)
-
-    @property
     def events(self) -> Array:
         """(n, 4), those that were recorded."""
-        return self.journal.events[: min(self.n_events, EVENTS)]
+        return self.journal.events[: self.n_events]
 
     @property
     def n_events(self) -> int:
@@ -172,9 +148,8 @@ class Run:
             depth = np.maximum(c["depth"] + 0.5 * dt * p["face"] * (c["vz"] - rise), 0.0)
             np.add.at(self.journal.sums["stored"], p["slider"], 0.5 * p["stiffness"] * depth**2)
         n, j = int(self.journal.progress["samples"][0]), self.journal
-        self.journal = j._replace(
-            samples=j.samples[:n], heights=j.heights[:n], pressures=j.pressures[:n], deflections=j.deflections[:n]
-        )
+        ended = {name: getattr(j, name)[:n] for name in ("samples", "heights", "pressures", "deflections")}
+        self.journal = j._replace(**ended)
         self.z, self.end = z, stage.origin + self.step * dt
         return self
 
@@ -186,26 +161,26 @@ class Run:
         if accounts and stage.forced is not None:
             forced, loads = stage.rows.accounts(stage.forced)
             growth = np.array(stage.envelope, dtype=float)
-        kept = Accounts(accounts, forced, loads, growth, np.zeros(loads.shape[1]))
+        kept = state.Accounts(accounts, forced, loads, growth, np.zeros(loads.shape[1]))
         if self.journal.deflections.shape[1]:
             self.journal = self.journal._replace(places=np.ascontiguousarray(stage.outputs(places).T))
         response = response_of(self.assembly, n + stage.complex_rows)
-        drive, factors = Harmonic(stage.omega, stage.origin, stage.unit_s), np.zeros((4, 2, columns))
-        first, reason = self._around(stage), DONE
-        while first is not None and self.step < stage.steps.n and reason not in (NOT_FINITE, CHATTERS):
+        drive, factors = state.Harmonic(stage.omega, stage.origin, stage.unit_s), np.zeros((4, 2, columns))
+        first, reason = self._around(stage), state.DONE
+        while first is not None and self.step < stage.steps.n and reason not in (state.NOT_FINITE, state.CHATTERS):
             table, edges = stage.table(*first), stage.edges[first[0] : first[1] + 1] - self.assembly.start
             marks = np.full(len(table), -1, dtype=np.int64)
-            surface = Surface(table, edges, factors, np.zeros((len(table), 2, stage.degree + 1)), marks)
+            surface = state.Surface(table, edges, factors, np.zeros((len(table), 2, stage.degree + 1)), marks)
             self.assembly.contacts["piece"] = np.searchsorted(edges[1:-1], self.positions())
             self.set_up_s += thread_time() - began
-            beam = Beam(rows, stage.complex_rows, drive, surface)
+            beam = state.Beam(rows, stage.complex_rows, drive, surface)
             reason = self._march(stage, beam, response, kept, progress)
             if self.step < stage.steps.n:
                 began, last, self.reach = thread_time(), first, min(2 * self.reach, FARTHEST)
                 first = None if (around := self._around(stage)) == last else around
         self.z, self.seconds = rows.z_re + 1j * rows.z_im, self.seconds + self.step * stage.steps.dt
-        if reason in (NOT_FINITE, CHATTERS):
-            self.stopped = "diverged" if reason == NOT_FINITE else "chatters"
+        if reason in (state.NOT_FINITE, state.CHATTERS):
+            self.stopped = "diverged" if reason == state.NOT_FINITE else "chatters"
         elif self.step < stage.steps.n:
             if self.assembly.moving_load:
                 self._go_on(stage, places)
@@ -215,27 +190,27 @@ class Run:
         return self.z
 
     def _march(
-        self, stage: Stage, beam: Beam, response: Response | None, accounts: Accounts, progress: Progress
+        self, stage: Stage, beam: state.Beam, response: Response | None, accounts: state.Accounts, progress: Progress
     ) -> int:
         """Chunks of steps on one table; why they end."""
         from verify.dynamics.impact import Ground, advance_impacts
         from verify.dynamics.integrator import advance
 
-        steps, kind, bodies, before, reason = stage.steps, self.assembly.kind, self.assembly.bodies, self.n_steps, DONE
-        hard, begun = self.assembly.restitution, self.step
+        steps, kind, bodies, reason = stage.steps, self.assembly.kind, self.assembly.bodies, state.DONE
+        hard, ground = self.assembly.restitution, Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
+        given = steps.dt, kind, beam, bodies, response, accounts, self.journal
         if not self.journal.progress["samples"][0]:
             if hard is None:
-                advance(0, 1, steps.dt, kind, beam, bodies, response, accounts, self.journal)
+                advance(0, 1, *given)
             self.sample_first()
-        while reason == DONE and self.step < steps.n:
-            began, n = thread_time(), min(CHUNK, steps.n - self.step)
+        while reason == state.DONE and self.step < steps.n:
+            began, begun, n = thread_time(), self.step, min(CHUNK, steps.n - self.step)
             if hard is None:
-                reason = advance(n, steps.every, steps.dt, kind, beam, bodies, response, accounts, self.journal)
+                reason = advance(n, steps.every, *given)
             else:
-                ground = Ground(beam, np.zeros((3, beam.surface.table.shape[2])))
                 reason = advance_impacts(n, steps.every, steps.dt, hard, kind, ground, bodies, self.journal)
             self.loop_s += thread_time() - began
-            self.n_steps = before + self.step - begun
+            self.n_steps += self.step - begun
             progress(self.n_steps)
         return int(reason)
 
@@ -286,8 +261,7 @@ class Run:
 
 def of_all(records: Records) -> dict[str, float]:
     """Sums of the fields of records of floats, by name."""
-    values = records.view(np.float64).reshape(len(records), -1).sum(axis=0)
-    return dict(zip(records.dtype.names or (), values.tolist(), strict=True))
+    return {name: float(records[name].sum()) for name in records.dtype.names or ()}
 
 
 def response_of(assembly: Assembly, columns: int) -> Response | None:
@@ -298,7 +272,7 @@ def response_of(assembly: Assembly, columns: int) -> Response | None:
     return Response(np.zeros((4, n, columns)), np.zeros(columns), np.zeros((2, n, n)), np.zeros((n, n + 1)))
 
 
-def rows_of(stage: Stage, z: ComplexArray) -> Rows:
+def rows_of(stage: Stage, z: ComplexArray) -> state.Rows:
     """The rows of a stage in state z, as the kernels advance them."""
     rate, dt = stage.rows.rates, stage.steps.dt
     grown = np.expm1(rate * dt)
@@ -306,4 +280,4 @@ def rows_of(stage: Stage, z: ComplexArray) -> Rows:
     coarse = abs(rate) * dt > RESOLVED
     end = np.where(coarse, gain / dt, stage.rows.participations * grown)
     pairs = (part for value in (z, rate, np.exp(0.5 * rate * dt), gain, end) for part in (value.real, value.imag))
-    return Rows(*np.array([*pairs, coarse]))  # in the order of `Rows`
+    return state.Rows(*np.array([*pairs, coarse]))  # in the order of `Rows`

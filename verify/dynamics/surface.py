@@ -17,19 +17,13 @@ AHEAD = (0.0, 0.5, 0.5, 1.0)
 class Motion(NamedTuple):
     """Motion of the surface under a point at xi, in metres and seconds."""
 
-    xi: float
-    """The material under the point, on the piece."""
+    xi: float  # The material under the point, on the piece
     w: float
-    slope: float
-    """w' of the material."""
-    rise: float
-    """dw/dt of the material."""
-    turn: float
-    """dw'/dt of the material."""
-    bend: float
-    """w'' at the point."""
-    turn_at_point: float
-    """dw'/dt at the point."""
+    slope: float  # w' of the material
+    rise: float  # dw/dt of the material
+    turn: float  # dw'/dt of the material
+    bend: float  # w'' at the point
+    turn_at_point: float  # dw'/dt at the point
 
 
 @inline

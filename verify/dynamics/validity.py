@@ -1,109 +1,74 @@
 """Validity of a run: the size of the coupling of sliders and beam, and of what no time step removes."""
 
-from collections.abc import Callable, Sequence
 from functools import lru_cache
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.linear_system import Stage, steady_beam
+from verify.dynamics.request import Request
+from verify.dynamics.result import Coupling, Margins
 from verify.linear.field import lossless_wavenumber, travelling_wavenumber
 from verify.linear.surface import section_at
-from verify.linear.time_basis import Ratio, TimeBasis
+from verify.linear.time_basis import TimeBasis
 from verify.problem.beam import Beam, PointForce
-from verify.problem.slider import Slider
-
-if TYPE_CHECKING:
-    from verify.dynamics.request import Request
 
 NEAR = 1e-3
 """Spacing of the forces that represent a couple, over the smaller of 1/k and L/50: it misses (k d)^2/24 = 4e-8."""
-Receptance = Callable[[Array], tuple[ComplexArray, ComplexArray]]
-"""places (n,) -> deflections under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
+Receptances = tuple[ComplexArray, ComplexArray]
+"""Deflections of places under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
 
 
-class Coupling(Struct, frozen=True, kw_only=True):
-    """Whether sliders and beam are coupled two-way, and the relative error of one-way coupling."""
-
-    two_way: bool
-    friction_size: float | None
-    """Surface speed due to friction mu N over that due to the drive; None without surface motion by the drive."""
-    normal_size: float
-    """Surface motion due to the normal load over that due to the drive: N |G| / |w| with unilateral contact, else
-    m omega^2 |G| of the slider's inertia. Infinite for a loaded surface without motion by the drive."""
-
-
-class Margins(Struct, frozen=True, kw_only=True):
-    """Validity of a run; each margin is small where its assumption holds."""
-
-    lift_off: float
-    """Largest downward acceleration of the surface over N / m: a free slider lifts off above 1.
-
-    Under a point slider in the run; else the largest along the beam in the steady state."""
-    nonlinearity: float
-    """(kL)^2 <theta^2>: relative size of the axial inertia, neglected in linear theory, of a roller-ended chain.
-
-    Mean over links and time. A scale, not a bound: the paper's beam at 4276 Hz departs by 0.6 of it at mid-span in the
-    first millisecond from rest."""
-    presliding: float | None = None
-    """Presliding 2 mu kappa / (kappa_t k h): tangential deformation of the contact before it slips, relative to the
-    surface motion. 0 for tangentially rigid contact; None without contact springs or without a travelling wave."""
-    contact_step: float = 0.0
-    """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
-
-
-def coupling_of(
-    beam: Beam, sliders: Sequence[Slider], starts: Sequence[float], stage: Stage, receptance: Receptance
-) -> Coupling:
-    """Largest sizes over the sliders, with the loads of all sliders.
+def coupling_of(request: Request, basis: TimeBasis | None, stage: Stage) -> Coupling:
+    """Largest sizes over the sliders of a run with last stage `stage`, with the loads of all sliders.
 
     Friction mu N exerts a couple (h/2) mu N on the beam, which rotates the section and thereby moves the surface.
+    Raises InputError.
     """
-    places, omega = np.array(starts), stage.omega
-    half = np.array([section_at(beam, x).surface_distance for x in starts])
+    places, omega = np.array(request.starts), request.omega
+    if basis and request.start == "rest":
+        receptances = modal_receptances(basis, request, places)
+    else:
+        receptances = field_receptances(request, places)
+    half = np.array([section_at(request.beam, x).surface_distance for x in request.starts])
     drive = [abs(stage.drive_shapes(places, derivative)[0]) for derivative in (0, 1)]
     normal, friction = np.zeros(len(places)), np.zeros(len(places))
-    for slider, lever, risen, turned in zip(sliders, half, *receptance(places), strict=True):
+    for slider, lever, risen, turned in zip(request.sliders, half, *receptances, strict=True):
         with np.errstate(divide="ignore", invalid="ignore"):
             loaded = np.where(drive[0] > 0.0, slider.load * abs(risen) / drive[0], np.inf)
         normal += slider.mass * omega**2 * abs(risen) if slider.contact is None else loaded
         friction += slider.mu * slider.load * lever * half * omega * abs(turned)
     speeds = half * omega * drive[1]
     return Coupling(
-        two_way=sliders[0].coupling == "two-way",
+        two_way=request.two_way,
         friction_size=float((friction / speeds).max()) if (speeds > 0.0).all() else None,
         normal_size=float(normal.max()),
     )
 
 
-def modal_receptance(basis: TimeBasis, omega: float, damping: Ratio) -> Receptance:
-    """Receptance by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
+def modal_receptances(basis: TimeBasis, request: Request, places: Array) -> Receptances:
+    """Receptances by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
+    omega, hertz, damping = request.omega, request.frequency_hz, request.damping_in(basis)
     compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
-
-    def receptance(places: Array) -> tuple[ComplexArray, ComplexArray]:
-        shapes, hertz = [basis.shapes(places, derivative) for derivative in (0, 1)], omega / (2.0 * np.pi)
-        risen, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
-        if basis.tail is not None:
-            turned += [basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1) for x in places.tolist()]
-        return risen, turned
-
-    return receptance
+    shapes = [basis.shapes(places, derivative) for derivative in (0, 1)]
+    risen, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
+    if basis.tail is not None:
+        turned += [basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1) for x in places.tolist()]
+    return risen, turned
 
 
-def field_receptance(
-    beam: Beam, model: str, count: int | None, frequency_hz: float, damping: float | None
-) -> Receptance:
-    """Receptance by steady fields of the model with damping ratio `damping` (None: loss factor). Raises InputError."""
-
-    def receptance(places: Array) -> tuple[ComplexArray, ComplexArray]:
-        loads = [((PointForce(position=x),), couple(beam, x, frequency_hz)) for x in places.tolist()]
-        fields = [[steady_beam(model, count, beam, one, frequency_hz, damping).field for one in pair] for pair in loads]
-        return np.array([f.deflection(places) for f, _ in fields]), np.array([f.slope(places) for _, f in fields])
-
-    return receptance
+def field_receptances(request: Request, places: Array) -> Receptances:
+    """Receptances by steady fields of the model. Raises InputError."""
+    beam, hertz, risen, turned = request.beam, request.frequency_hz, [], []
+    for x in places.tolist():
+        by_force, by_couple = (
+            steady_beam(request.model, request.count, beam, loads, hertz, request.modal_damping).field
+            for loads in ((PointForce(position=x),), couple(beam, x, hertz))
+        )
+        risen.append(by_force.deflection(places))
+        turned.append(by_couple.slope(places))
+    return np.array(risen), np.array(turned)
 
 
 @lru_cache(maxsize=256)
@@ -120,7 +85,7 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
 
-def margins_of(request: "Request", stage: Stage) -> Margins:
+def margins_of(request: Request, stage: Stage) -> Margins:
     """Margins of a run with last stage `stage`, except those that depend on time steps.
 
     `lift_off` of point sliders is that of the run.
@@ -135,7 +100,7 @@ def margins_of(request: "Request", stage: Stage) -> Margins:
     return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
 
 
-def presliding(request: "Request") -> float | None:
+def presliding(request: Request) -> float | None:
     """`Margins.presliding`, the largest of all feet."""
     largest = 0.0
     for slider, start in zip(request.sliders, request.starts, strict=True):

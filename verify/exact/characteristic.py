@@ -42,12 +42,10 @@ class Carry(NamedTuple):
     """Transfer of minors over a span of length and stiffness 1, all times one positive factor."""
 
     one: float
-    both: float
-    """Product of the two cosh."""
+    both: float  # Product of the two cosh
     g2: float
     g3: float
-    h4: float
-    """As in `_series`; g2 is half the product of the two sinh, each over its wavenumber."""
+    h4: float  # As in `_series`; g2 is half the product of the two sinh, each over its wavenumber
     tip: float
     guide: float
     lift: float
@@ -60,10 +58,8 @@ class Carry(NamedTuple):
 class Count(NamedTuple):
     """The characteristic equation at a trial value."""
 
-    below: int
-    """Number of frequencies below it."""
-    minor: float
-    """The minor that vanishes at a frequency, up to a positive factor."""
+    below: int  # Number of frequencies below it
+    minor: float  # The minor that vanishes at a frequency, up to a positive factor
 
 
 def _waves(square: float, shift: float) -> tuple[float, float, float]:

@@ -103,10 +103,8 @@ class Law(msgspec.Struct, frozen=True, kw_only=True):
 
     root: Callable[[float], float]
     """mu = beta L / N -> omega^2 rho A l^4 / EI, the exact dispersion on the lower branch."""
-    leading: float
-    """Leading relative frequency error over mu^4, without clamped ends."""
-    clamped_terms: bool
-    """Whether clamped ends add to the error."""
+    leading: float  # Leading relative frequency error over mu^4, without clamped ends
+    clamped_terms: bool  # Whether clamped ends add to the error
 
 
 LAWS = {

@@ -31,14 +31,10 @@ class UniformSpan(NamedTuple):
     """A span of one section, relative to the beam's own L, EI and rho A."""
 
     length: float
-    stiffness: float
-    """EI."""
-    mass: float
-    """rho A."""
-    compliance: float
-    """1 / (kappa G A), times EI / L^2 of the beam; 0 without shear."""
-    rotary: float
-    """rho I, over rho A L^2 of the beam; 0 without rotary inertia."""
+    stiffness: float  # EI
+    mass: float  # rho A
+    compliance: float  # 1 / (kappa G A), times EI / L^2 of the beam; 0 without shear
+    rotary: float  # rho I, over rho A L^2 of the beam; 0 without rotary inertia
 
 
 class Station(NamedTuple):
@@ -48,8 +44,7 @@ class Station(NamedTuple):
     rotational: float = 0.0
     mass: float = 0.0
     inertia: float = 0.0
-    dashpot: float = 0.0
-    """Relative to EI / L^3 per dimensionless frequency; `rotational_dashpot` relative to EI / L."""
+    dashpot: float = 0.0  # Relative to EI / L^3 per dimensionless frequency; `rotational_dashpot` relative to EI / L
     rotational_dashpot: float = 0.0
     support: str = "free"
     """Support at the station: "pinned" prevents the deflection, "guided" the rotation, "clamped" both."""
@@ -59,14 +54,10 @@ class BeamLayout(msgspec.Struct, frozen=True, kw_only=True):
     """Spans and stations of a beam."""
 
     supports: Sequence[str]
-    spans: tuple[UniformSpan, ...]
-    """n spans from the left."""
-    stations: tuple[Station, ...]
-    """(n + 1): at the left end, between spans, at the right end."""
-    tension: float
-    """T L^2 / EI."""
-    foundation: float
-    """k_f L^4 / EI."""
+    spans: tuple[UniformSpan, ...]  # n spans from the left
+    stations: tuple[Station, ...]  # (n + 1): at the left end, between spans, at the right end
+    tension: float  # T L^2 / EI
+    foundation: float  # k_f L^4 / EI
 
     @property
     def positions(self) -> tuple[float, ...]:

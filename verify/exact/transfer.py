@@ -37,30 +37,18 @@ class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A layout divided into pieces at each of n_cases frequencies; pieces and ends are numbered through all cases."""
 
     layout: BeamLayout
-    omega2: Array
-    """(n_cases,), over EI / (rho A L^4)."""
-    counts: Indices
-    """(n_cases, n_spans), pieces of each span."""
-    rates: Any
-    """(n_cases * n_spans, 4, 4), d/dt of (w, psi, M, V), each relative to `sizes`; t is 0 to 1 over a piece."""
-    sums: Any
-    """(n_cases * n_spans,), S; real without losses, as are all following arrays."""
-    products: Any
-    """(n_cases * n_spans,), P."""
-    over: Any
-    """(n_ends, 4, 4), transfer of the state over attachments."""
-    sizes: Array
-    """(n_cases, 4), units of the state: 1, k, k^2, k^3."""
-    span: Indices
-    """(n_pieces,), index of the rate of each piece."""
-    left: Indices
-    """(n_pieces,), left end of each piece."""
-    begins: Array
-    """(n_pieces,), x / L of that end."""
-    lengths: Array
-    """(n_pieces,), relative to L."""
-    station_ends: Indices
-    """(n_cases, n_stations), the end at each station."""
+    omega2: Array  # (n_cases,), over EI / (rho A L^4)
+    counts: Indices  # (n_cases, n_spans), pieces of each span
+    rates: Any  # (n_cases * n_spans, 4, 4), d/dt of (w, psi, M, V), each relative to `sizes`; t is 0 to 1 over a piece
+    sums: Any  # (n_cases * n_spans,), S; real without losses, as are all following arrays
+    products: Any  # (n_cases * n_spans,), P
+    over: Any  # (n_ends, 4, 4), transfer of the state over attachments
+    sizes: Array  # (n_cases, 4), units of the state: 1, k, k^2, k^3
+    span: Indices  # (n_pieces,), index of the rate of each piece
+    left: Indices  # (n_pieces,), left end of each piece
+    begins: Array  # (n_pieces,), x / L of that end
+    lengths: Array  # (n_pieces,), relative to L
+    station_ends: Indices  # (n_cases, n_stations), the end at each station
 
 
 def divide(layout: BeamLayout, omega2: Array, loss_factor: float = 0.0) -> Division:

@@ -31,10 +31,8 @@ class FactoredSystem:
 
     strain_factors: Sequence[Sparse]
     """Sparse; B = factors[-1] @ ... @ factors[0]. The first factors are differences, exact in floating point."""
-    stiffness: Array
-    """d, (m,); negative where an axial compression releases energy."""
-    mass: Sparse
-    """M, (n, n), sparse by columns."""
+    stiffness: Array  # d, (m,); negative where an axial compression releases energy
+    mass: Sparse  # M, (n, n), sparse by columns
     rigid: Array = field(default_factory=lambda: np.zeros((0, 0)))
     """(n, r), rigid-body motions, whose zero eigenvalues are excluded."""
     lower_bound: float = 0.0

@@ -14,19 +14,15 @@ from verify.validation import check_number, check_type
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """N parts from left to right; (N,) arrays relative to the beam's own E, I, rho A, A and to `unit` of length."""
 
-    unit: float
-    """Mean length of a part, m: equal parts have length 1 exactly."""
+    unit: float  # Mean length of a part, m: equal parts have length 1 exactly
     lengths: Array
     moduli: Array
     second_moments: Array
     masses_per_length: Array
     areas: Array
-    equal: bool
-    """Whether all parts are equal."""
-    pieces: tuple[Piece, ...]
-    """Pieces of the beam that are divided."""
-    shares: list[int]
-    """Number of parts of each piece."""
+    equal: bool  # Whether all parts are equal
+    pieces: tuple[Piece, ...]  # Pieces of the beam that are divided
+    shares: list[int]  # Number of parts of each piece
 
     def of(self, figure: str) -> Array:
         """A property of the section of every part, (N,), SI."""

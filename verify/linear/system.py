@@ -233,23 +233,19 @@ class StructuralSystem(FactoredSystem):
             return np.arange(self.n), np.zeros((self.n, 0))
         return np.delete(np.arange(self.n), self._grounded()), self.rigid
 
-    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Response]:
-        """Elastic and rigid-body part (n, k), forces (p, k) of p constraints `rows`, of K + devices - omega^2 M.
+    def _bordered(
+        self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any, free: Any, rigid: Any, small: Any
+    ) -> Any:
+        """K + devices - omega^2 M over strains, the `free` coordinates, amplitudes of `rigid`, and constraints.
 
-        Iterative refinement: the factors lose soft supports beside bending, factored strains do not. Raises LinAlgError
-        where the matrix is singular, and where the last correction of a response exceeds `LOST`.
+        The forces of the constraints `rows` are in units of `small`.
         """
         from scipy.sparse import block_array, csc_array, hstack
-        from scipy.sparse.linalg import splu
 
-        m, n, (free, rigid) = len(d), self.n, self._coordinates(omega2)
-        # rigid-body inertia of order one beside the stiffness, whatever the frequency
-        small = np.sqrt(omega2) if omega2 and rigid.size else 1.0
-        rigid = rigid / small
-        matrix, split = self.augmented(-omega2, d), len(free)
+        matrix, m = self.augmented(-omega2, d), len(d)
 
         def widened(rows: Any) -> Any:
-            parts = rows if split == n else hstack([csc_array(rows)[:, free], csc_array(rows @ rigid)])
+            parts = rows if len(free) == self.n else hstack([csc_array(rows)[:, free], csc_array(rows @ rigid)])
             return hstack([csc_array((rows.shape[0], m)), parts], format="csr")
 
         if rigid.size:
@@ -263,8 +259,23 @@ class StructuralSystem(FactoredSystem):
         if rows is not None:
             wide = small * widened(rows)
             matrix = block_array([[matrix, wide.T], [wide, None]], format="csc")
+        return matrix
+
+    def _solver(self, omega2: float, d: Any, devices: Sequence[tuple[Any, Any]], rows: Any) -> Callable[..., Response]:
+        """Elastic and rigid-body part (n, k), forces (p, k) of p constraints `rows`, of K + devices - omega^2 M.
+
+        Iterative refinement: the factors lose soft supports beside bending, factored strains do not. Raises LinAlgError
+        where the matrix is singular, and where the last correction of a response exceeds `LOST`.
+        """
+        from scipy.sparse.linalg import splu
+
+        m, n, (free, rigid) = len(d), self.n, self._coordinates(omega2)
+        # rigid-body inertia of order one beside the stiffness, whatever the frequency
+        small = np.sqrt(omega2) if omega2 and rigid.size else 1.0
+        rigid = rigid / small
+        split = len(free)
         try:
-            factor = splu(matrix.astype(d.dtype))
+            factor = splu(self._bordered(omega2, d, devices, rows, free, rigid, small).astype(d.dtype))
         except RuntimeError:  # exactly singular
             raise np.linalg.LinAlgError(0.0) from None
 
@@ -291,10 +302,8 @@ class StructuralSystem(FactoredSystem):
                 more = step(residual, self.transposed @ (d[:, None] * self.strain(bent)), held)
                 bent, moved, forces = bent + more[0], moved + more[1], forces + more[2]
                 # a correction is what the factors lose; the next is as much smaller
-                sizes = [
-                    (abs(c).max(axis=0), abs(v).max(axis=0))
-                    for c, v in ((more[0], bent), (more[0] + more[1], bent + moved))
-                ]
+                pairs = (more[0], bent), (more[0] + more[1], bent + moved)
+                sizes = [(abs(c).max(axis=0), abs(v).max(axis=0)) for c, v in pairs]
                 lost = max(float((c / np.where(v == 0.0, 1.0, v)).max(initial=0.0)) for c, v in sizes)
                 if lost <= 1e-8:
                     break

@@ -21,13 +21,10 @@ Ratio: TypeAlias = float | Array
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The free modes of one model, of unit modal mass (SI)."""
 
-    model: str
-    """Name of the model."""
-    count: int | None
-    """Segments or elements; None for the exact beam, whose modes are truncated."""
+    model: str  # Name of the model
+    count: int | None  # Segments or elements; None for the exact beam, whose modes are truncated
     beam: Beam
-    omegas: Array
-    """(n,), rad/s, undamped."""
+    omegas: Array  # (n,), rad/s, undamped
     shapes: Callable[[Array, int], Array]
     """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; right-continuous at jumps. Signs as in
     `Modes`: positive next to the left end."""
@@ -35,12 +32,9 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
     turning_loads: Callable[[float], Array]
     """Position in metres -> (n,), the load of every mode under a unit moment there."""
-    edges: Array
-    """(pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`."""
-    degree: int
-    """Degree of the polynomials of the shapes."""
-    method: str
-    """Origin of the modes, for a summary."""
+    edges: Array  # (pieces + 1,), m: ends of the pieces, on which shapes are polynomials of `degree`
+    degree: int  # Degree of the polynomials of the shapes
+    method: str  # Origin of the modes, for a summary
     tail: Callable[[Sequence[PointLoad], float, Ratio], Callable[[Array, int], ComplexArray]] | None = None
     """Steady response of the truncated modes: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
 

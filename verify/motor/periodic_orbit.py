@@ -25,12 +25,9 @@ REPEATS = 1e-3
 class PeriodicOrbit(Struct, frozen=True, eq=False, kw_only=True):
     """Motion of the feet with the period of the drive."""
 
-    run: Motion
-    """Motion over the period."""
-    residual: float
-    """Largest change of a coordinate over the period, relative to its scale."""
-    multipliers: ComplexArray
-    """(n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)."""
+    run: Motion  # Motion over the period
+    residual: float  # Largest change of a coordinate over the period, relative to its scale
+    multipliers: ComplexArray  # (n,), eigenvalues of the Jacobian of the period map (Floquet multipliers)
     __repr__ = one_line(residual="", largest_multiplier="")
 
     @property

@@ -48,10 +48,8 @@ _TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
 class Saved(NamedTuple):
     """Where a run is."""
 
-    page: Path
-    """The latest page of that name."""
-    folder: Path | None
-    """The saved run; None where none is kept."""
+    page: Path  # The latest page of that name
+    folder: Path | None  # The saved run; None where none is kept
 
 
 def report_name(scene: str, overrides: Sequence[str] = ()) -> str:

@@ -55,8 +55,7 @@ NOTES = (
 class Allowance:
     """Drive periods for the figures of one model."""
 
-    per_period: float
-    """Processor time, s."""
+    per_period: float  # Processor time, s
     left: float
     """Of the steady states to come, whose number is `figures`; `free` are those of each of up to three free runs."""
     figures: int
@@ -81,17 +80,14 @@ class Field:
 
     case: "MotorCase"
     name: str
-    curve: "list[SteadyState]"
-    """From standstill to the crest speed, in the direction of the force."""
+    curve: "list[SteadyState]"  # From standstill to the crest speed, in the direction of the force
     no_load: float | None
     free: "Transient"
     stop: "Transient | None"
     reversal: "Transient | None"
     times: "dict[str, TimeConstant]"
-    missing: list[str]
-    """Why figures are not available, in words."""
-    longer: str
-    """The remedy where `seconds` limits the means, else empty."""
+    missing: list[str]  # Why figures are not available, in words
+    longer: str  # The remedy where `seconds` limits the means, else empty
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -210,10 +210,8 @@ class Search:
     variants: Variants
     executor: Executor | None
     progress: Progress
-    rows: dict[Point, Row] = field(default_factory=dict)
-    """By point."""
-    notes: list[str] = field(default_factory=list)
-    """Searches that stopped early."""
+    rows: dict[Point, Row] = field(default_factory=dict)  # By point
+    notes: list[str] = field(default_factory=list)  # Searches that stopped early
 
     @property
     def sign(self) -> float:

@@ -45,12 +45,9 @@ UNREAD = ("spectrum", "convergence", "wave", "large-motion", "sweep", "optimise"
 class Row:
     """Figures of one variant."""
 
-    values: list[Any]
-    """As plain data, by request; None from the first that is undefined."""
-    reason: str | None = None
-    """Why a value is missing."""
-    agreeing: int = 0
-    """Claims of the scene that agree."""
+    values: list[Any]  # As plain data, by request; None from the first that is undefined
+    reason: str | None = None  # Why a value is missing
+    agreeing: int = 0  # Claims of the scene that agree
     margins: list[Margin] = field(default_factory=list)
 
 

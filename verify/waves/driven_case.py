@@ -32,15 +32,12 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     model: BeamModel
-    forces: tuple[PointForce, ...]
-    """Amplitudes in N, N m, m, V or A by `kind`."""
+    forces: tuple[PointForce, ...]  # Amplitudes in N, N m, m, V or A by `kind`
     frequency_hz: float
     kind: str = "force"
     devices: tuple[Device, ...] = ()
-    actuator: Actuator | None = None
-    """Of voltages, currents and shunts; patches are part of the model's beam."""
-    shunts: tuple[tuple[float, Load], ...] = ()
-    """(position, m, electrical load) of passive actuators."""
+    actuator: Actuator | None = None  # Of voltages, currents and shunts; patches are part of the model's beam
+    shunts: tuple[tuple[float, Load], ...] = ()  # (position, m, electrical load) of passive actuators
 
     def __post_init__(self) -> None:
         for device in self.devices:
@@ -145,16 +142,11 @@ class UnitWaves(msgspec.Struct, frozen=True, eq=False):
     """
 
     case: DrivenCase
-    frequencies_hz: Array
-    """(n,)."""
-    k: ComplexArray
-    """(n,), 1/m."""
-    forward: ComplexArray
-    """A+ at the middle of the window, (n, n_a), m per unit of the drive's amplitudes."""
-    backward: ComplexArray
-    """A- at the middle of the window, (n, n_a), m per unit of the drive's amplitudes."""
-    missing: tuple[NoFigureError, ...]
-    """The reason for each frequency without waves."""
+    frequencies_hz: Array  # (n,)
+    k: ComplexArray  # (n,), 1/m
+    forward: ComplexArray  # A+ at the middle of the window, (n, n_a), m per unit of the drive's amplitudes
+    backward: ComplexArray  # A- at the middle of the window, (n, n_a), m per unit of the drive's amplitudes
+    missing: tuple[NoFigureError, ...]  # The reason for each frequency without waves
 
     def superposed(self, drives: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A+ and A- in m, (n, p) arrays, under p sets of complex amplitudes, (n_a, p) or (n, n_a, p).

@@ -34,12 +34,9 @@ _DECAY = np.array([1j, 1.0])
 class Ending(msgspec.Struct, frozen=True):
     """A half-infinite beam at a device near its end. Impedances in kg/s, against rotation in N m s."""
 
-    own: complex
-    """Z_b, impedance of the beam."""
-    matched: complex
-    """Z_m, impedance of a device without reflection."""
-    rigid: complex
-    """Gamma_rigid, the reflection by a rigid device."""
+    own: complex  # Z_b, impedance of the beam
+    matched: complex  # Z_m, impedance of a device without reflection
+    rigid: complex  # Gamma_rigid, the reflection by a rigid device
 
     def reflection(self, impedance: complex) -> float:
         """|Gamma| at a device of an impedance in kg/s (rotational: N m s)."""

@@ -35,14 +35,10 @@ def standing_wave_ratios(gammas: Array) -> Array:
 class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A forward and a backward wave fitted to phasors; amplitudes refer to the middle of the window."""
 
-    wavenumber: complex
-    """k, 1/m, prescribed or fitted."""
-    forward: complex
-    """A+ of e^{-ik(x - middle)}, m."""
-    backward: complex
-    """A- of e^{+ik(x - middle)}, m."""
-    residual: float
-    """Residual of the fit, rms over rms of the field."""
+    wavenumber: complex  # k, 1/m, prescribed or fitted
+    forward: complex  # A+ of e^{-ik(x - middle)}, m
+    backward: complex  # A- of e^{+ik(x - middle)}, m
+    residual: float  # Residual of the fit, rms over rms of the field
 
     @property
     def direction(self) -> int:
