@@ -129,7 +129,7 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
 def chain_runs(chain: RigidChain, steps: Steps, modes: int, within: float) -> "tuple[Table, Margin, list[str]]":
     """(modes as meant and simulated, margin of the one that differs most, warnings) of a chain for its steps."""
     motions, scheme = list[Motion](), scheme_of(*steps[1:])
-    for axis in chain.axes:
+    for axis in chain.motions:
         file, run = (simulated_chain(one, steps.step, scheme, axis) for one in (chain.meant or chain, chain))
         motions.append(Motion(axis, chain.exact_hz(axis, modes), file, run))
     rows, step = [row for one in motions for row in one.rows()], with_unit(steps.step, "s")
