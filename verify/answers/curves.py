@@ -59,7 +59,7 @@ def curve_chain(
     if len(request.ratios) > 1 or request.in_hz or request.compensated:
         raise InputError(f"damping = {damping!r}: a curved chain has that of one mode, give '1%' or '1% at 2'")
     if ratio:
-        omega = 2.0 * pi * chain.frequencies_hz(n_modes=int(request.at[0]))
+        omega = (2.0 * pi * chain.frequencies_hz(n_modes=int(request.at[0]))).tolist()
         chain = with_dashpots(chain, dict.fromkeys(chain.axes, 2.0 * ratio / omega[-1]), ratio * omega[0] / omega[-1])
     engine = engine or "MuJoCo" * own.endswith((".xml", ".mjcf"))
     if engine:

@@ -12,9 +12,10 @@ import numpy as np
 
 from verify.analysis.plausibility import unit_margins
 from verify.analysis.verdict import FINE, Margin, per_cent
+from verify.engines.curved_files import judge_rod, needs_rod, weight
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
-from verify.engines.rules import SAME, SQUARE, Judged, judge
+from verify.engines.rules import SAME, SQUARE, Judged, half_links, judge
 from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
@@ -65,6 +66,10 @@ def judge_file(
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
     kind, solids, gravity, own = read(path)
     setting, every = setting_of(own, engine, step), lines(solids, path.name)
+    if beam is None and needs_rod(every[0]):
+        return _judge_rod(path, every, gravity, setting, modes, within, corrected, (kind, solids, step))
+    if every[0].curve.bent:
+        raise InputError(f"{path.name}: its chain is curved and the beam is straight, give the file alone")
     in_space = len(found := [line for line in every if line.axis != "torsion"]) > 1 and all(one.solid for one in found)
     theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
     beam = beam and _from_wall(found[0], beam, path.name)
@@ -104,6 +109,95 @@ def judge_file(
     margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
     known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
     return Result(summary, tables, warnings=warnings, margins=margins, data=known)
+
+
+def _judge_rod(
+    path: Path,
+    lines: list[Line],
+    gravity: Any,
+    setting: Any,
+    modes: int,
+    within: float,
+    corrected: Path | None,
+    file: Any,
+) -> "Result":
+    """The result of a chain that is curved or graded, by the rod that it means."""
+    from verify.report.result import Column, Result, Table
+
+    judged, (kind, solids, step) = judge_rod(lines, path.name), file
+    one, axis = judged[0], judged[0].present.motions[0]
+    present: Any = one.present
+    rows, _, margins, worse, data = _assess(one, modes, within)
+    columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("rod", "file"))]
+    columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
+    run = judge_runs([present], [data["exact_hz"]], present.beam, setting, within)
+    joints = [_curved_joints(each) for each in judged]
+    warnings = [*run.warnings, *[worse] * bool(worse)]
+    others = [*run.margins, *weight(present, gravity, within)]
+    changes = _changes(judged)
+    if corrected and (worse or one.odd or not changes):
+        warnings.append(
+            f"{shown(str(corrected))} is not written: no rule of the wall alone is better, or a joint is off the law"
+        )
+    elif corrected:
+        last = (
+            0.0
+            if step
+            else judge_runs([one.correct], [data["exact_hz"]], present.beam, setting, within).data.get("within", 0.0)
+        )
+        warnings.append(_write(path, kind, solids, changes, corrected, last))
+    turns = sorted(present.rest_angle(j) for j in range(1, present.count))
+    summary = (
+        f"{present.count} rigid links along {present.beam.length:.6g} m, {present.beam.mass_per_length:.6g} kg/m, "
+    )
+    summary += "rest angles "
+    summary += f"{np.degrees(turns[0]):.3g} to {np.degrees(turns[-1]):.3g} degrees; "
+    summary += "; ".join(f"{each.line.axis}: {each.rule}" for each in judged) + f". {run.summary}"
+    size = max([each.size for each in others] + [float(abs(data["error"]).max())])
+    known = {
+        "passed": size <= within,
+        "chains": [
+            data | {"axis": axis},
+            *({"axis": each.line.axis, "rule": each.rule, "odd": each.odd} for each in judged),
+        ],
+        "run": run.data,
+    }
+    margins = others + (margins if run.data else [in_space_only(each) for each in margins])
+    tables = [
+        Table(
+            "Frequencies",
+            columns,
+            [(axis, *row[1:]) for row in rows],
+            ["The rod is estimated by links in 2 and 4 parts."],
+        ),
+        *run.tables,
+        *joints,
+    ]
+    return Result(summary.strip(), tables, warnings=warnings, margins=margins, data=known)
+
+
+def _curved_joints(one: Judged) -> "Table":
+    """Joints about an axis, with what they mean."""
+    from verify.report.result import Column, Table
+
+    name = STIFFNESS[one.line.turns]
+    columns = [
+        Column("joint"),
+        Column("name"),
+        Column("rest angle", "deg", ".4g"),
+        Column("length", "m", ".5g"),
+        Column(name, "N m2", ".5g"),
+    ]
+    columns += [Column(each, "N m/rad", ".6g") for each in ("present", "correct")]
+    means = one.line.springs * half_links(one.line.links[:, 0])
+    angles = np.degrees([one.present.rest_angle(j) for j in range(one.present.count)])
+    each = [
+        [None if np.isnan(x) else float(x) for x in values]
+        for values in (angles, one.line.links[:, 0], means, one.line.springs, one.springs)
+    ]
+    return Table(
+        f"Joints in {one.line.axis}", columns, list(zip(range(len(means)), one.line.joints, *each, strict=True))
+    )
 
 
 def _changes(judged: list[Judged]) -> dict[str, float]:
@@ -162,7 +256,8 @@ def _cause(one: Judged) -> str:
     if one.links:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
-        return f"set joint {', '.join(one.odd[:MANY])} or give a scene that has it"
+        text = " or give a scene that has it" * (not one.line.curve.bent)
+        return f"set joint {', '.join(one.odd[:MANY])}{text}"
     return "give more links"
 
 

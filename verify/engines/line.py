@@ -37,7 +37,7 @@ class Line(NamedTuple):
     ball: bool
     dashpots: Array
     armatures: Array
-    curve: "Curve | None" = None
+    curve: "Curve"
 
     @property
     def turns(self) -> Axis:
@@ -46,7 +46,7 @@ class Line(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Places of the joints and the end at rest, (N + 1, 3), m, directions of the links, and the hinges of a line.
+    """Places of the joints and the end at rest, (N + 1, 3), m, directions of links, (N, 3), of the hinges of a line.
 
     `bodies`: masses, (N,), centres, (N, 3), inertias about them, (N, 3, 3), of links with what is fixed to them.
     """
@@ -55,6 +55,7 @@ class Curve(NamedTuple):
     ways: Array
     bodies: tuple[Array, Array, Array]
     hinges: Array
+    bent: bool
 
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
@@ -116,14 +117,15 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         raise InputError(
             f"{name}: centres of mass are off the lines between its joints, give links from joint to joint"
         )
-    last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
+    share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
+    last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
     if not curved and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
         last = float(steps[-1])  # a body of the end moves the centre of mass
     return places, ways, np.append(steps, last), curved
 
 
 def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain in bending in each plane of its hinges, in torsion, with its `curve` where it is not straight.
+    """The chain in bending in each plane of its hinges, in torsion, straight or along a curve.
 
     Raises InputError for what is no chain of links with hinges along or across them.
     """
@@ -156,9 +158,8 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
         seen = _direction(about[0]), _direction(np.cross(ways[0], about[0])), _deep(mains, ways, about, solid)
         hinges = np.array([moves[0].axis if moves else e for moves, e in zip(own, about, strict=True)])
-        curve = Curve(ends, ways, bodies, hinges) if curved else None
-        rest = ball, dashpots, armatures, curve
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, *rest))
+        curve = Curve(ends, ways, bodies, hinges, curved)
+        found.append(Line(axis, joints, springs, np.stack(links, 1), solid, *seen, ball, dashpots, armatures, curve))
     return found
 
 

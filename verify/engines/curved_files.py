@@ -1,0 +1,178 @@
+"""A chain of a file that is curved at rest, or graded in mass and stiffness: the rod that it means, what deviates.
+
+The joints mean the curve, and EI = k (l + l')/2 of a joint between links l and l', and GJ likewise, each by a
+law along the rod; masses and polar inertias are those of the links. The reference is that rod, clamped and free.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verify.analysis.verdict import Margin
+from verify.arrays import Array
+from verify.engines.curved import CurvedChain, curved_chain, mass_matrix
+from verify.engines.description import AXES, Axis, Hinge, Joint, Link
+from verify.engines.line import STRAIGHT, Line
+from verify.engines.rod import Rod, transported
+from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links
+from verify.engines.stiffness_law import ALIKE, ROUGH, Law
+from verify.errors import InputError
+from verify.problem.beam import Beam
+from verify.settings import WALLS, wall_label
+
+UNEVEN = 0.01
+"""Relative difference of mass per length from which a link differs."""
+JUMP = 1.2
+"""Ratio of neighbouring links from which their masses are a step."""
+WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not rule.first and all(rule.weights)}
+"""Weights at a wall by the rule in words."""
+RIGID = 1e3
+"""GJ over EI of a chain without hinges in torsion."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FileChain(CurvedChain):
+    """The bodies of a file: masses, centres, inertias in the world, and `hinges`: place, direction, first body."""
+
+    bodies: tuple[Array, Array, Array]
+    hinges: tuple[Array, Array, Array]
+
+    def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
+        """(mass, stiffness) over all `unknowns`, (n, n), from the pose at which the springs are at rest."""
+        springs = [stiffness for *_, stiffness in self.unknowns(self.motions[0])]
+        return mass_matrix(self.bodies, *self.hinges), np.diag(springs)
+
+    def drag(self, axis: Axis = "bending") -> Array:
+        """None: it is left out."""
+        return np.zeros((len(self.hinges[0]),) * 2)
+
+
+def needs_rod(line: Line) -> bool:
+    """Whether a file is curved, or its masses and stiffnesses vary, which no beam of one mass per length explains."""
+    lengths, masses = line.links.T[:2]
+    odd, ei = abs(masses / lengths / np.median(masses / lengths) - 1.0) > UNEVEN, line.springs * half_links(lengths)
+    return line.curve.bent or bool(odd.sum() > max(1, len(odd) // 4) and np.ptp(ei[3:]) > ALIKE * ei[-1])
+
+
+def judge_rod(lines: list[Line], name: str) -> list[Judged]:
+    """The rules of a chain and what is wrong with it, about each axis; all have the same two chains. Raises InputError.
+
+    Without a scene no joint but those at the wall has another correct stiffness, and none where one is off the law.
+    """
+    bending, plane = [line for line in lines if line.axis != "torsion"], len(lines) == 1
+    _, ways, _, hinges, _ = lines[0].curve
+    lengths, lean = lines[0].links[:, 0], max(abs(ways @ hinges[0]).max(), 1.0 - abs(hinges @ hinges[0]).min())
+    if (plane and lean > STRAIGHT) or (not plane and len(bending) < 2):
+        raise InputError(f"{name}: on a curve in space its links bend about one axis, give two hinges across each")
+    if any(line.springs[0] == 0.0 for line in bending):
+        raise InputError(
+            f"{name}: its joint at the wall is free, on a curve chains are judged clamped: give a stiffness"
+        )
+    held, laws, rules = bool(np.isnan(bending[0].springs[0])), list[Law](), list[str]()
+    means = [line.springs * half_links(lengths) for line in lines]
+    try:
+        for line, values in zip(lines, means, strict=True):
+            rule, law = at_wall(values, line.joints, "clamped", lengths)
+            known = WEIGHTS.get(rule, ())[: law.kind == "smooth" and len(values)]
+            law.joints[: len(known)] = values[: len(known)] * known  # nearer than by extrapolation
+            laws, rules = [*laws, law], [*rules, rule]
+    except InputError as error:
+        raise InputError(f"{name}: {str(error).partition(':')[0]}: correct them") from None
+    rod = _rod(lines, laws, plane)
+    meant = curved_chain(rod, np.unique(rod.s))
+    odd, first = [j for law in laws for j in law.odd], 3 if meant.wall == "gregory" else 1
+    judged, correct = list[Judged](), list[Array]()
+    for line, law, values, rule in zip(lines, laws, means, rules, strict=True):
+        k, twists = line.springs, line.turns == "torsion"
+        best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
+        right = abs(k[0] / best[0] - 1.0) < 0.5 * ROUGH if twists else rule in (wall_label(meant.wall), SERIES, ADAPTED)
+        text = f"{2.0 * k[0] / best[0]:.4g} GJ/l at the wall" if twists and not held else rule
+        springs = np.where((np.arange(len(k)) < (1 if twists else first)) & (not (held or odd or right)), best, k)
+        wrong = [text] * (not right)
+        wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
+        names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
+        text += f", {'GJ' if twists else 'EI'} {law.kind}, {ends if np.ptp(law.links) else f'{law.links[0]:.6g}'} N m2"
+        judged.append(Judged(line, meant, meant, text, float(law.links[0]), springs, wrong, [], [], names))
+        correct.append(springs)
+    present, right = (_chain(lines, each, meant, rod) for each in ([line.springs for line in lines], correct))
+    faults = list(dict.fromkeys(text for one in judged for text in one.faults))
+    return [one._replace(present=present, correct=right, faults=faults) for one in judged]
+
+
+def _rod(lines: list[Line], laws: list[Law], plane: bool) -> Rod:
+    """The rod of links: values at both ends of each, by the laws of the joints; in a plane `u` is in it."""
+    places, ways, (_, _, inertias), *_ = lines[0].curve
+    lengths, masses = lines[0].links.T[:2]
+    spins = np.einsum("ni,nij,nj->n", ways, inertias, ways) / lengths
+    ei, *others = [_ends(law.links if law.kind != "smooth" else None, law.joints) for law in laws]
+    ei2 = others[0] if others else ei
+    about = {line.axis: value for line, value in zip(lines, [ei, *others], strict=True)}
+    gj = about.get("torsion", RIGID * np.maximum(ei, ei2))
+    tangents = np.vstack([ways[:1], ways[1:] + ways[:-1]])
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    start, u = np.cross(lines[0].curve.hinges[0], ways[0]), np.cross(lines[0].curve.hinges, tangents)
+    frames = transported(tangents, start, np.zeros(len(u)))
+    turned = (np.einsum("ni,nij->nj", u, frames)[:, 1:] * [-1.0, 1.0]).T  # along -y and u
+    roll = 0.5 * np.unwrap(2.0 * np.arctan2(*turned)) if not plane else np.zeros(len(u))
+    values = [ei, ei2, gj, _even(masses / lengths), _even(spins), _ends(None, roll), *np.zeros((2, 2 * len(u)))]
+    return Rod(np.repeat(places, 2, axis=0)[1:-1], np.stack(values, axis=1), not plane, start)
+
+
+def _ends(links: Array | None, joints: Array) -> Array:
+    """A value at both ends of each link, (2 N,): of `links`, or linear between `joints`, (N,)."""
+    pairs = [joints, np.append(joints[1:], joints[-1])] if links is None else [links, links]
+    return np.stack(pairs, axis=1).ravel()
+
+
+def _even(values: Array) -> Array:
+    """Values of links at their ends: one, linear between the middles, or, with steps, constant in each."""
+    if np.ptp(values) < UNEVEN * values.min():
+        return np.full(2 * len(values), np.median(values))
+    if max(values[1:] / values[:-1]) > JUMP or min(values[1:] / values[:-1]) < 1.0 / JUMP:
+        return _ends(values, values)
+    ends = 1.5 * values[[0, -1]] - 0.5 * values[[1, -2]]
+    return np.concatenate([ends[:1], np.repeat(0.5 * (values[1:] + values[:-1]), 2), ends[1:]])
+
+
+def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain, rod: Rod) -> FileChain:
+    """The bodies of the file with springs about each axis, (N,)."""
+    curve, n = lines[0].curve, len(lines[0].springs)
+    rows, hinges = list[tuple[Hinge, ...]](), list[tuple[int, Array]]()
+    for j in range(n):
+        about = [(line, k[j]) for line, k in zip(lines, springs, strict=True) if not np.isnan(k[j])]
+        rows.append(
+            tuple(Hinge(one.axis, float(k), float(one.dashpots[j]), float(one.armatures[j])) for one, k in about)
+        )
+        hinges += [(j, one.curve.hinges[j]) for one, _ in about]
+    first = np.array([j for j, _ in hinges])
+    edges = np.append(0.0, np.cumsum(lines[0].links[:, 0])).tolist()
+    links = tuple(
+        Link(x, h, m, c, (own,) * 3) for x, (h, m, c, own) in zip(edges, lines[0].links.tolist(), strict=False)
+    )
+    ends = (*rows, tuple(Hinge(axis, 0.0) for axis in AXES[: len(lines)]))
+    mass = float(lines[0].links[:, 1].sum()) / edges[-1]
+    beam = Beam(
+        length=edges[-1], supports=("clamped", "free"), bending_stiffness=rod.values[0, 0], mass_per_length=mass
+    )
+    shape: dict[str, Any] = {one: getattr(meant, one) for one in ("rod", "nodes", "kind", "places", "frames", "half")}
+    joints = tuple(Joint(x, row) for x, row in zip(edges, ends, strict=True))
+    shape |= {
+        "in_space": rod.in_space,
+        "bodies": curve.bodies,
+        "hinges": (curve.places[first], np.array([one for _, one in hinges]), first),
+    }
+    return FileChain(beam, "half", joints, links, **shape)
+
+
+def weight(chain: FileChain, gravity: Array, within: float) -> list[Margin]:
+    """The margin of a weight that bends the chain, by linear theory."""
+    masses, centres, _ = chain.bodies
+    at, about, first = chain.hinges
+    moved = (first <= np.arange(len(masses))[:, None])[..., None] * np.cross(about, centres[:, None] - at)
+    angles = np.einsum("m,mni,i->n", masses, moved, gravity) / [k for *_, k in chain.unknowns(chain.motions[0])]
+    sag = float(np.linalg.norm(np.einsum("mni,n->mi", moved, angles), axis=1).max()) / chain.beam.length
+    text = f"not judged under gravity: its weight bends it by {sag:.2g} of its length (linear theory)"
+    remedy = "set gravity to zero for the frequencies without it"
+    words: dict[str, Any] = {"name": "gravity", "failure": text, "remedy": remedy, "harm": "premise"}
+    return [Margin(size=sag, fine=within, limit=within, **words)] if sag > within else []
