@@ -68,9 +68,10 @@ class CurvedChain(RigidChain):
         return (self.places[0] if j == 0 else np.array([self.links[j - 1].length, 0.0, 0.0])), turns
 
     def drawn(self, j: int) -> tuple[float, float]:
-        """Sides of a link, across and along `u`, m; a hundredth of the length where unknown."""
-        width, thickness = self.rod.at(np.array([0.5 * (self.nodes[j] + self.nodes[j + 1])]))[0, 6:].tolist()
-        return width or 0.01 * self.beam.length, thickness or 0.01 * self.beam.length
+        """Sides of a link, across and along `u`, m; where unknown a hundredth of the length, and as EI2 to EI."""
+        ei, ei2, *_, width, thickness = self.rod.at(np.array([0.5 * (self.nodes[j] + self.nodes[j + 1])]))[0].tolist()
+        thickness = thickness or 0.01 * self.beam.length
+        return width or thickness * (ei2 / ei) ** 0.5, thickness
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
         """(mass, stiffness) over all `unknowns`, (n, n), from the rest pose: its springs are without load."""

@@ -15,7 +15,7 @@ from verify.engines.curved import CurvedChain, curved_chain, mass_matrix
 from verify.engines.description import AXES, Axis, Hinge, Joint, Link
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.rod import Rod, transported
-from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links
+from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links, written
 from verify.engines.stiffness_law import ALIKE, ROUGH, Law
 from verify.errors import InputError
 from verify.problem.beam import Beam
@@ -92,8 +92,9 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         wrong = [text] * (not right)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
         names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
-        text += f", {'GJ' if twists else 'EI'} {law.kind}, {ends if np.ptp(law.links) else f'{law.links[0]:.6g}'} N m2"
-        judged.append(Judged(line, meant, meant, text, float(law.links[0]), springs, wrong, [], [], names))
+        level = float(law.joints[0])
+        law_text = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(level)
+        judged.append(Judged(line, meant, meant, text, level, springs, wrong, [], [], names, law_text))
         correct.append(springs)
     present, right = (_chain(lines, each, meant, rod) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))
@@ -165,8 +166,9 @@ def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain, rod: Rod
     return FileChain(beam, "half", joints, links, **shape)
 
 
-def weight(chain: FileChain, gravity: Array, within: float) -> list[Margin]:
-    """The margin of a weight that bends the chain, by linear theory."""
+def weight(judged: list[Judged], _: Any, gravity: Array, within: float) -> list[Margin]:
+    """The margin of a weight that bends a rod, by linear theory."""
+    chain: Any = judged[0].present
     masses, centres, _ = chain.bodies
     at, about, first = chain.hinges
     moved = (first <= np.arange(len(masses))[:, None])[..., None] * np.cross(about, centres[:, None] - at)

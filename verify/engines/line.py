@@ -105,7 +105,7 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
     along = (places[-1] - places[0]) / (np.linalg.norm(places[-1] - places[0]) or 1.0)
     off = [one - np.outer(one @ along, along) for one in (places - places[0], centres - places)]
     reach = float(along @ (places[-1] - places[0]))
-    curved = not reach or max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * reach
+    curved = not reach or bool(max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * reach)
     if len(parts) < 2 + curved:
         raise InputError(f"{name}: give two links or more, on a curve three")
     ways, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)

@@ -39,6 +39,7 @@ class Judged(NamedTuple):
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
     of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
+    `means`: EI or GJ in words.
     """
 
     line: Line
@@ -51,6 +52,7 @@ class Judged(NamedTuple):
     links: list[str]
     advice: list[str]
     odd: list[str]
+    means: str
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -90,7 +92,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     names = [line.joints[j] for j in (*law.odd, *steps) if meant is None]
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
-    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names)
+    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, written(stiffness))
 
 
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
@@ -100,6 +102,11 @@ def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayl
     rows = zip(edges, line.links.tolist(), strict=False)
     links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)
+
+
+def written(stiffness: float) -> str:
+    """EI or GJ in words."""
+    return f"= {stiffness:.6g} N m2"
 
 
 def half_links(soft: Array) -> Array:
