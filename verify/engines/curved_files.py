@@ -23,8 +23,8 @@ from verify.settings import WALLS, wall_label
 
 UNEVEN = 0.01
 """Relative difference of mass per length from which a link differs."""
-JUMP = 1.2
-"""Ratio of neighbouring links from which their masses are a step."""
+JUMP = 3.0
+"""Difference between two links, over that of their neighbours, from which it is a step."""
 WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not rule.first and all(rule.weights)}
 """Weights at a wall by the rule in words."""
 RIGID = 1e3
@@ -105,7 +105,7 @@ def _rod(lines: list[Line], laws: list[Law], plane: bool) -> Rod:
     """The rod of links: values at both ends of each, by the laws of the joints; in a plane `u` is in it."""
     places, ways, (_, _, inertias), *_ = lines[0].curve
     lengths, masses = lines[0].links.T[:2]
-    spins = np.einsum("ni,nij,nj->n", ways, inertias, ways) / lengths
+    spins = np.ones(len(ways)) if plane else np.einsum("ni,nij,nj->n", ways, inertias, ways) / lengths
     ei, *others = [_ends(law.links if law.kind != "smooth" else None, law.joints) for law in laws]
     ei2 = others[0] if others else ei
     about = {line.axis: value for line, value in zip(lines, [ei, *others], strict=True)}
@@ -130,7 +130,9 @@ def _even(values: Array) -> Array:
     """Values of links at their ends: one, linear between the middles, or, with steps, constant in each."""
     if np.ptp(values) < UNEVEN * values.min():
         return np.full(2 * len(values), np.median(values))
-    if max(values[1:] / values[:-1]) > JUMP or min(values[1:] / values[:-1]) < 1.0 / JUMP:
+    steps = abs(np.diff(values))
+    around = np.maximum(np.append(steps[1:], steps[-2]), np.append(steps[1], steps[:-1]))
+    if (steps > JUMP * around + UNEVEN * values.min()).any():
         return _ends(values, values)
     ends = 1.5 * values[[0, -1]] - 0.5 * values[[1, -2]]
     return np.concatenate([ends[:1], np.repeat(0.5 * (values[1:] + values[:-1]), 2), ends[1:]])

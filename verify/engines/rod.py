@@ -86,9 +86,9 @@ class Rod:
         return np.stack([np.interp(s, self.s, one) for one in self.values.T], axis=1)
 
     def steps(self, begin: float, end: float) -> bool:
-        """Whether a value jumps between two arc lengths, m."""
+        """Whether EI jumps between two arc lengths, m."""
         at = np.flatnonzero(np.diff(self.s) == 0.0)
-        jumps = (self.values[at] != self.values[at + 1]).any(axis=1)
+        jumps = (self.values[at, :2] != self.values[at + 1, :2]).any(axis=1)
         return bool((jumps & (self.s[at] > begin) & (self.s[at] < end)).any())
 
     def quadrature(self, cuts: Array) -> tuple[Array, Array]:
