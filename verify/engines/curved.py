@@ -4,7 +4,7 @@ Link j runs from node j to the next: its frame has x along the chord, z along `u
 links turns about the axes of the rotation half way between their frames: about those of one link, EI and GJ would mix
 by half a rest angle, order 1. Its compliance is the integral of ds/EI between the middles of both links. At the wall
 that is over half a link, or by Gregory's weights times h/EI at the joint where the first three links have one length h
-and no step: both are of order 2 on a curve, the second with a third of the error or less (a quarter circle, a taper of
+and no step: both are of order 2 on a curve, the second with half of the error or less (a quarter circle, a taper of
 10 to 1). Bodies carry the rest pose, so that all springs are at rest at zero angles, whatever a format calls the
 reference of a spring.
 """
