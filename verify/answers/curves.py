@@ -53,7 +53,7 @@ def curve_chain(
     rod, request, own = read_rod(Path(curve), overrides, section, in_space), asked(damping), str(path or "").lower()
     points = np.unique(rod.s)
     number = len(points) - 1 if count is None else count
-    check_integer("count", number, 2, MOST_LINKS)
+    check_integer("count", number, 2, MOST_LINKS // (1 + 3 * rod.in_space))  # matrices are dense
     chain: Any = curved_chain(rod, points if count is None else np.linspace(0.0, points[-1], number + 1), links)
     ratio = request.ratios[0]
     if len(request.ratios) > 1 or request.in_hz or request.compensated:
@@ -80,7 +80,7 @@ def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     columns += [Column("error", format="+.3g", percent=True), Column("order", format=".2f")]
     shown = [order if np.isfinite(order) else None for order in orders.tolist()]
     rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), shown, strict=True))
-    note = "The rod is estimated by links in 2 and 4 parts; of order 2 on a curve, of 4 or more straight and uniform."
+    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 2 and as of order 2."
     worst = int(abs(errors).argmax())
     words: dict[str, Any] = {"where": f"at mode {worst + 1}", "remedy": "give more links"}
     words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
@@ -89,15 +89,9 @@ def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     summary += f"length {100.0 * short:+.2g} %, far end "
     summary += f"{with_unit(off, 'm') if off > 1e-9 * total else '0 m'} off; {wall_label(chain.wall)}"
     tables, warnings = [table(chain), Table("Frequencies", columns, rows, [note])], list[str]()
-    if chain.wall != "gregory":
-        warnings.append(
-            "the first three links differ in length or have a step: the wall has the rule of half a link, of order 2"
-        )
     if chain.steps:
         summary += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}"
         ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
         tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
-    if (turn := max(map(chain.rest_angle, range(n)))) > 0.5:
-        warnings.append(f"rest angles up to {np.degrees(turn):.3g} degrees: give more links, and points along corners")
     own = data(chain) | {"rod_hz": exact, "orders": orders, "length_error": short, "end_error": off}
     return Result(f"{summary}.", tables, warnings=warnings, margins=margins, data=own)

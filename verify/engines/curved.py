@@ -18,12 +18,15 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import AXES, Axis, Hinge, Joint, Link, RigidChain
 from verify.engines.rod import Rod, transported
+from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.segments.walls import wall_factors
 
 Links = Literal["chords", "arcs"]
 ALIKE = 0.01
 """Relative difference of first links up to which they are alike: Gregory's joint is then off by 0.4 % of a link."""
+BACK = -0.99
+"""Cosine between links from which the axes of the joint between are uncertain."""
 MOST = 1500
 """Unknowns of a chain of four parts a link; with more the error is by two parts alone: matrices are dense."""
 
@@ -32,9 +35,9 @@ MOST = 1500
 class CurvedChain(RigidChain):
     """A chain with joint j at `places`[j], (N + 1, 3), m, and link frames (N, 3, 3), clamped at joint 0, else free.
 
-    `half`: from the frame of the link before to that of the joint, and on to that of the link, (N, 3, 3); joint 0 has
-    that of the curve. `rod` and
-    `nodes`, arc length at the joints, m, are what it divides. In space all axes vibrate together.
+    `half`: from the frame of the link before, at joint 0 of the wall, to that of the joint, and on to that of the link,
+    (N, 3, 3). `rod` and `nodes`, arc length at the joints, m, are what it divides. In the world are masses, (N,),
+    centres, (N, 3), and inertias about them, (N, 3, 3), of `bodies`; places, axes, (n, 3), and joints of `hinges`.
     """
 
     rod: Rod
@@ -43,6 +46,8 @@ class CurvedChain(RigidChain):
     places: Array
     frames: Array
     half: Array
+    bodies: tuple[Array, Array, Array]
+    hinges: tuple[Array, Array, Array]
 
     straight, along, reference = False, "each link", "the rod, estimated by links in parts"
 
@@ -52,11 +57,8 @@ class CurvedChain(RigidChain):
         return ("coupled",) if self.in_space else AXES[:1]
 
     def unknowns(self, axis: Axis) -> list[tuple[str, int, float]]:
-        """(name, joint, stiffness) of the hinges about an axis, or of all, joint by joint."""
-        every = [
-            (j, h) for j, joint in enumerate(self.joints[:-1]) for h in joint.hinges if axis in (h.axis, "coupled")
-        ]
-        return [(f"joint{j}_{h.axis}", j, h.stiffness) for j, h in every]
+        """(name, joint, stiffness) of all hinges, joint by joint."""
+        return [(f"joint{j}_{h.axis}", j, h.stiffness) for j, one in enumerate(self.joints[:-1]) for h in one.hinges]
 
     def constraints(self, axis: Axis) -> Array:
         """None: the far end is free."""
@@ -75,22 +77,20 @@ class CurvedChain(RigidChain):
 
     def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
         """(mass, stiffness) over all `unknowns`, (n, n), from the rest pose: its springs are without load."""
-        names, joints, springs = zip(*self.unknowns(self.motions[0]), strict=True)
-        axes = self.frames @ np.swapaxes(self.half, 1, 2)
-        directions = {"bending": -axes[:, :, 1], "width": axes[:, :, 2], "torsion": axes[:, :, 0]}
-        about = np.array([directions[name.partition("_")[2]][j] for name, j in zip(names, joints, strict=True)])
-        return mass_matrix(self._bodies, self.places[list(joints)], about, np.array(joints)), np.diag(springs)
+        (masses, _, inertias), (_, about, _) = self.bodies, self.hinges
+        speeds, moved = self.speeds
+        turns = about.T * moved[:, None]
+        mass = np.tensordot(masses[:, None, None] * speeds, speeds, ((0, 1), (0, 1)))
+        mass += np.tensordot(inertias @ turns, turns, ((0, 1), (0, 1)))
+        return mass, np.diag([stiffness for *_, stiffness in self.unknowns(axis)])
 
     @property
-    def _bodies(self) -> tuple[Array, Array, Array]:
-        """Masses, (N,), centres, (N, 3), and inertias about them, (N, 3, 3), in the world."""
-        masses, x, own = (np.array([getattr(one, of) for one in self.links]) for of in ("mass", "centre", "inertia"))
-        inertias = np.einsum("nij,nj,nkj->nik", self.frames, own, self.frames)
-        return masses, self.places[:-1] + x[:, None] * self.frames[:, :, 0], inertias
-
-    def frequencies_hz(self, axis: Axis = "bending", n_modes: int | None = None) -> Array:
-        """Frequencies of the chain, of all axes together, (n_modes,), ascending, Hz."""
-        return super().frequencies_hz(self.motions[0], n_modes)
+    def speeds(self) -> tuple[Array, Array]:
+        """(velocities of the bodies' centres by rates of the `unknowns`, (N, 3, n), 1 where they move them, (N, n))."""
+        at, about, first = self.hinges
+        moved = 1.0 * (first <= np.arange(self.count)[:, None])
+        arms = np.cross(about, self.bodies[1][:, None] - at).transpose(0, 2, 1)
+        return np.asarray(arms * moved[:, None]), np.asarray(moved)
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
@@ -105,19 +105,6 @@ class CurvedChain(RigidChain):
         return (j > 0) * float(4.0 * np.arcsin(min(np.linalg.norm(self.half[j] - np.eye(3)) / 8.0**0.5, 1.0)))
 
 
-def mass_matrix(bodies: tuple[Array, Array, Array], at: Array, about: Array, first: Array) -> Array:
-    """Mass matrix, (n, n), of hinges `at` places `about` axes, (n, 3), that move all bodies from the `first`, (n,), on.
-
-    `bodies`: masses (m,), centres (m, 3) and inertias about them (m, 3, 3), in the world.
-    """
-    masses, centres, inertias = bodies
-    moved = (first <= np.arange(len(masses))[:, None])[:, None, :]
-    turns = about.T * moved
-    speeds = np.cross(about, centres[:, None] - at).transpose(0, 2, 1) * moved
-    mass = np.tensordot(masses[:, None, None] * speeds, speeds, ((0, 1), (0, 1)))
-    return np.asarray(mass + np.tensordot(inertias @ turns, turns, ((0, 1), (0, 1))))
-
-
 def curved_chain(rod: Rod, nodes: Array, kind: Links = "chords") -> CurvedChain:
     """The chain with joints at arc lengths `nodes`, (N + 1,), m, from 0 to the length.
 
@@ -128,6 +115,8 @@ def curved_chain(rod: Rod, nodes: Array, kind: Links = "chords") -> CurvedChain:
     chords = np.diff(places, axis=0)
     lengths = np.linalg.norm(chords, axis=1)
     middles, tangents = 0.5 * (nodes[1:] + nodes[:-1]), chords / lengths[:, None]
+    if np.einsum("ni,ni->n", tangents[1:], tangents[:-1]).min(initial=1.0) < BACK:
+        raise InputError("curve: two links point in opposite directions, give more links or points along the turn")
     every = transported(np.vstack([rod.tangent, tangents]), rod.start, rod.at(np.append(0.0, middles))[:, 5])
     first, frames = every[0], every[1:]
     if kind == "arcs":
@@ -156,7 +145,13 @@ def curved_chain(rod: Rod, nodes: Array, kind: Links = "chords") -> CurvedChain:
     ei, mass = rod.values[0, [0, 3]].tolist()
     beam = Beam(length=edges[-1], supports=("clamped", "free"), bending_stiffness=ei, mass_per_length=mass)
     joints = tuple(Joint(x, tuple(map(Hinge, axes, k))) for x, k in zip(edges, springs, strict=True))
+    about = frames @ np.swapaxes(half, 1, 2)
+    each = np.stack([-about[:, :, 1], about[:, :, 2], about[:, :, 0]], axis=1)[:, : len(axes)]
+    order = np.repeat(np.arange(n), len(axes))
+    world = np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
     shape: dict[str, Any] = {"nodes": tuple(nodes.tolist()), "places": places, "frames": frames, "half": half}
+    shape |= {"hinges": (places[order], each.reshape(-1, 3), order)}
+    shape |= {"bodies": (masses, places[:-1] + centres[:, None] * tangents, world)}
     links = tuple(Link(*row) for row in rows)
     return CurvedChain(beam, wall, joints, links, in_space=rod.in_space, rod=rod, kind=kind, **shape)
 

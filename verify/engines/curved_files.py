@@ -4,21 +4,21 @@ The joints mean the curve, and EI = k (l + l')/2 of a joint between links l and 
 law along the rod; masses and polar inertias are those of the links. The reference is that rod, clamped and free.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace as with_fields
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.analysis.verdict import Margin
 from verify.arrays import Array
-from verify.engines.curved import CurvedChain, curved_chain, mass_matrix
-from verify.engines.description import AXES, Axis, Hinge, Joint, Link
+from verify.engines.curved import CurvedChain, curved_chain
+from verify.engines.description import Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.rod import Rod, transported
 from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links, written
 from verify.engines.stiffness_law import ALIKE, ROUGH, Law
 from verify.errors import InputError
-from verify.problem.beam import Beam
 from verify.settings import WALLS, wall_label
 
 UNEVEN = 0.01
@@ -29,23 +29,6 @@ WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not
 """Weights at a wall by the rule in words."""
 RIGID = 1e3
 """GJ over EI of a chain without hinges in torsion."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FileChain(CurvedChain):
-    """The bodies of a file: masses, centres, inertias in the world, and `hinges`: place, direction, first body."""
-
-    bodies: tuple[Array, Array, Array]
-    hinges: tuple[Array, Array, Array]
-
-    def matrices(self, axis: Axis = "bending") -> tuple[Array, Array]:
-        """(mass, stiffness) over all `unknowns`, (n, n), from the pose at which the springs are at rest."""
-        springs = [stiffness for *_, stiffness in self.unknowns(self.motions[0])]
-        return mass_matrix(self.bodies, *self.hinges), np.diag(springs)
-
-    def drag(self, axis: Axis = "bending") -> Array:
-        """None: it is left out."""
-        return np.zeros((len(self.hinges[0]),) * 2)
 
 
 def needs_rod(line: Line) -> bool:
@@ -65,10 +48,8 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     lengths, lean = lines[0].links[:, 0], max(abs(ways @ hinges[0]).max(), 1.0 - abs(hinges @ hinges[0]).min())
     if (plane and lean > STRAIGHT) or (not plane and len(bending) < 2):
         raise InputError(f"{name}: on a curve in space its links bend about one axis, give two hinges across each")
-    if any(line.springs[0] == 0.0 for line in bending):
-        raise InputError(
-            f"{name}: its joint at the wall is free, on a curve chains are judged clamped: give a stiffness"
-        )
+    if any((line.springs == 0.0).any() or np.isnan(line.springs[1:]).any() for line in lines):
+        raise InputError(f"{name}: a joint has no stiffness about an axis of the others, on a curve give it one")
     held, laws, rules = bool(np.isnan(bending[0].springs[0])), list[Law](), list[str]()
     means = [line.springs * half_links(lengths) for line in lines]
     try:
@@ -96,7 +77,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         law_text = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(level)
         judged.append(Judged(line, meant, meant, text, level, springs, wrong, [], [], names, law_text))
         correct.append(springs)
-    present, right = (_chain(lines, each, meant, rod) for each in ([line.springs for line in lines], correct))
+    present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))
     return [one._replace(present=present, correct=right, faults=faults) for one in judged]
 
@@ -138,44 +119,27 @@ def _even(values: Array) -> Array:
     return np.concatenate([ends[:1], np.repeat(0.5 * (values[1:] + values[:-1]), 2), ends[1:]])
 
 
-def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain, rod: Rod) -> FileChain:
+def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain) -> CurvedChain:
     """The bodies of the file with springs about each axis, (N,)."""
-    curve, n = lines[0].curve, len(lines[0].springs)
-    rows, hinges = list[tuple[Hinge, ...]](), list[tuple[int, Array]]()
-    for j in range(n):
-        about = [(line, k[j]) for line, k in zip(lines, springs, strict=True) if not np.isnan(k[j])]
-        rows.append(
-            tuple(Hinge(one.axis, float(k), float(one.dashpots[j]), float(one.armatures[j])) for one, k in about)
-        )
-        hinges += [(j, one.curve.hinges[j]) for one, _ in about]
-    first = np.array([j for j, _ in hinges])
-    edges = np.append(0.0, np.cumsum(lines[0].links[:, 0])).tolist()
-    links = tuple(
-        Link(x, h, m, c, (own,) * 3) for x, (h, m, c, own) in zip(edges, lines[0].links.tolist(), strict=False)
-    )
-    ends = (*rows, tuple(Hinge(axis, 0.0) for axis in AXES[: len(lines)]))
-    mass = float(lines[0].links[:, 1].sum()) / edges[-1]
-    beam = Beam(
-        length=edges[-1], supports=("clamped", "free"), bending_stiffness=rod.values[0, 0], mass_per_length=mass
-    )
-    shape: dict[str, Any] = {one: getattr(meant, one) for one in ("rod", "nodes", "kind", "places", "frames", "half")}
-    joints = tuple(Joint(x, row) for x, row in zip(edges, ends, strict=True))
-    shape |= {
-        "in_space": rod.in_space,
-        "bodies": curve.bodies,
-        "hinges": (curve.places[first], np.array([one for _, one in hinges]), first),
-    }
-    return FileChain(beam, "half", joints, links, **shape)
+    curve, rows, hinges = lines[0].curve, list[tuple[Hinge, ...]](), list[tuple[int, Array]]()
+    for j in range(meant.count):
+        found = [(one, float(k[j])) for one, k in zip(lines, springs, strict=True) if not np.isnan(k[j])]
+        each = [(one.axis, k, float(one.dashpots[j]), float(one.armatures[j])) for one, k in found]
+        rows.append(tuple(Hinge(*values) for values in each))
+        hinges += [(j, one.curve.hinges[j]) for one, _ in found]
+    first, edges = np.array([j for j, _ in hinges]), np.append(0.0, np.cumsum(lines[0].links[:, 0])).tolist()
+    joints = tuple(map(Joint, edges, [*rows, meant.joints[-1].hinges]))
+    beam = replace(meant.beam, length=edges[-1], mass_per_length=float(lines[0].links[:, 1].sum()) / edges[-1])
+    about = curve.places[first], np.array([one for _, one in hinges]), first
+    return with_fields(meant, beam=beam, joints=joints, bodies=curve.bodies, hinges=about)
 
 
 def weight(judged: list[Judged], _: Any, gravity: Array, within: float) -> list[Margin]:
     """The margin of a weight that bends a rod, by linear theory."""
     chain: Any = judged[0].present
-    masses, centres, _ = chain.bodies
-    at, about, first = chain.hinges
-    moved = (first <= np.arange(len(masses))[:, None])[..., None] * np.cross(about, centres[:, None] - at)
-    angles = np.einsum("m,mni,i->n", masses, moved, gravity) / [k for *_, k in chain.unknowns(chain.motions[0])]
-    sag = float(np.linalg.norm(np.einsum("mni,n->mi", moved, angles), axis=1).max()) / chain.beam.length
+    speeds, springs = chain.speeds[0], np.diag(chain.matrices()[1])
+    angles = np.einsum("m,min,i->n", chain.bodies[0], speeds, gravity) / springs
+    sag = float(np.linalg.norm(speeds @ angles, axis=1).max()) / chain.beam.length
     text = f"not judged under gravity: its weight bends it by {sag:.2g} of its length (linear theory)"
     remedy = "set gravity to zero for the frequencies without it"
     words: dict[str, Any] = {"name": "gravity", "failure": text, "remedy": remedy, "harm": "premise"}

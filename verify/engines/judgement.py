@@ -74,7 +74,8 @@ def judge_file(
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     twists, rod = every[len(found) :], beam is None and needs_rod(every[0])
-    judged = judge_rod([*found, *twists], path.name) if rod else []
+    judged = judge_rod(every, path.name) if rod else []
+    setting = setting._replace(note="the drag of its medium is left out") if rod and setting.viscosity else setting
     judged = judged or [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
     judged += filter(None, (judge_twist(line, beam) for line in twists if not rod))
     lone = every[len(judged) :]
