@@ -1,5 +1,7 @@
 """Files of chains that are curved at rest or graded: the rod that they mean, by Ritz, and what deviates from it."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -91,6 +93,24 @@ def test_a_file_in_space_means_its_rod(tmp_path):
     assert coupled["frequencies_hz"] == pytest.approx(mujoco_hz(tmp_path / "helix.xml")[:3], rel=1e-6)
     assert result.data["passed"]
     assert coupled["faults"] == []
+
+
+def test_hinges_about_the_axes_of_one_link_are_of_order_one(tmp_path):
+    """EI and GJ mix by half a rest angle; about the axes half way between links the order is two."""
+    path, exact = helix(tmp_path / "helix.csv")
+    errors = []
+    for n in (20, 40):
+        curve_chain(path, n, path=tmp_path / "helix.xml")
+        text = (tmp_path / "helix.xml").read_text()
+        for name, axis in (("bending", "0 -1 0"), ("width", "0 0 1"), ("torsion", "1 0 0")):
+            text = re.sub(rf'(name="joint\d+_{name}" type="hinge" axis=")[^"]*"', rf'\g<1>{axis}"', text)
+        (tmp_path / "links.xml").write_text(text)
+        files = [mujoco_hz(tmp_path / name)[0] / exact[0] - 1.0 for name in ("links.xml", "helix.xml")]
+        errors.append(files)
+        (fault,) = judge_file(tmp_path / "links.xml", None, 3).data["chains"][0]["faults"]
+        assert "half way between links" in fault
+    assert np.log2(np.divide(*errors)) == pytest.approx([1.0, 2.0], abs=0.1)
+    assert errors[0][0] > 10.0 * abs(errors[0][1])
 
 
 def test_a_tapered_blade_needs_no_scene(tmp_path):

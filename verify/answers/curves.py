@@ -86,7 +86,7 @@ def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
     margins = [Margin(name=f"discretisation of {n} links", **words)]
     summary = f"N = {n} rigid links along {chain.kind} of {with_unit(total, 'm')}: "
-    summary += f"length {100.0 * short:+.2g} %, far end "
+    summary += f"length {100.0 * short * (abs(short) > 1e-9):+.2g} %, far end "
     summary += f"{with_unit(off, 'm') if off > 1e-9 * total else '0 m'} off; {wall_label(chain.wall)}"
     tables, warnings = [table(chain), Table("Frequencies", columns, rows, [note])], list[str]()
     if chain.steps:

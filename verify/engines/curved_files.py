@@ -13,12 +13,12 @@ from msgspec.structs import replace
 from verify.analysis.verdict import Margin
 from verify.arrays import Array
 from verify.engines.curved import CurvedChain, curved_chain
-from verify.engines.description import Hinge, Joint
+from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.rod import Rod, transported
 from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links, written
 from verify.engines.stiffness_law import ALIKE, ROUGH, Law
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.settings import WALLS, wall_label
 
 UNEVEN = 0.01
@@ -27,6 +27,10 @@ JUMP = 3.0
 """Difference between two links, over that of their neighbours, from which it is a step."""
 WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not rule.first and all(rule.weights)}
 """Weights at a wall by the rule in words."""
+TILT = 5e-3
+"""Angle, rad, of hinges off the axes of a joint from which they are named: an error of about its square and EI/GJ."""
+HEAVY = 1.5
+"""Mass per length over that of both neighbours from which a link carries a body."""
 RIGID = 1e3
 """GJ over EI of a chain without hinges in torsion."""
 
@@ -44,12 +48,17 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     Without a scene no joint but those at the wall has another correct stiffness, and none where one is off the law.
     """
     bending, plane = [line for line in lines if line.axis != "torsion"], len(lines) == 1
-    _, ways, _, hinges, _ = lines[0].curve
+    _, ways, (masses, *_), hinges, _ = lines[0].curve
     lengths, lean = lines[0].links[:, 0], max(abs(ways @ hinges[0]).max(), 1.0 - abs(hinges @ hinges[0]).min())
     if (plane and lean > STRAIGHT) or (not plane and len(bending) < 2):
         raise InputError(f"{name}: on a curve in space its links bend about one axis, give two hinges across each")
     if any((line.springs == 0.0).any() or np.isnan(line.springs[1:]).any() for line in lines):
         raise InputError(f"{name}: a joint has no stiffness about an axis of the others, on a curve give it one")
+    density = masses / lengths
+    heavy = density > HEAVY * np.maximum(np.append(density[1:], 0.0), np.append(0.0, density[:-1]))
+    if heavy.any():
+        link = shown(bending[0].joints[int(heavy.argmax())])
+        raise InputError(f"{name}: the link of joint {link} carries a body, on a curve give the links alone")
     held, laws, rules = bool(np.isnan(bending[0].springs[0])), list[Law](), list[str]()
     means = [line.springs * half_links(lengths) for line in lines]
     try:
@@ -60,7 +69,9 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
             laws, rules = [*laws, law], [*rules, rule]
     except InputError as error:
         raise InputError(f"{name}: {str(error).partition(':')[0]}: correct them") from None
-    rod = _rod(lines, laws, plane)
+    tangents = np.vstack([ways[:1], ways[1:] + ways[:-1]])
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    rod = _rod(lines, laws, plane, tangents)
     meant = curved_chain(rod, np.unique(rod.s))
     odd, first = [j for law in laws for j in law.odd], 3 if meant.wall == "gregory" else 1
     judged, correct = list[Judged](), list[Array]()
@@ -79,10 +90,15 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         correct.append(springs)
     present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))
+    tilt = max(float(abs(np.einsum("ni,ni->n", one.curve.hinges, tangents)[1:]).max()) for one in bending)
+    levels = [law.joints[0] for law in laws]
+    if not plane and tilt > TILT and (len(lines) < len(AXES) or np.ptp(levels) > ALIKE * levels[0]):
+        angle = f"{np.degrees(tilt):.2g} degrees"
+        faults.append(f"hinges across are up to {angle} off the axes half way between links: EI and GJ mix, order 1")
     return [one._replace(present=present, correct=right, faults=faults) for one in judged]
 
 
-def _rod(lines: list[Line], laws: list[Law], plane: bool) -> Rod:
+def _rod(lines: list[Line], laws: list[Law], plane: bool, tangents: Array) -> Rod:
     """The rod of links: values at both ends of each, by the laws of the joints; in a plane `u` is in it."""
     places, ways, (_, _, inertias), *_ = lines[0].curve
     lengths, masses = lines[0].links.T[:2]
@@ -91,8 +107,6 @@ def _rod(lines: list[Line], laws: list[Law], plane: bool) -> Rod:
     ei2 = others[0] if others else ei
     about = {line.axis: value for line, value in zip(lines, [ei, *others], strict=True)}
     gj = about.get("torsion", RIGID * np.maximum(ei, ei2))
-    tangents = np.vstack([ways[:1], ways[1:] + ways[:-1]])
-    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
     start, u = np.cross(lines[0].curve.hinges[0], ways[0]), np.cross(lines[0].curve.hinges, tangents)
     frames = transported(tangents, start, np.zeros(len(u)))
     turned = (np.einsum("ni,nij->nj", u, frames)[:, 1:] * [-1.0, 1.0]).T  # along -y and u

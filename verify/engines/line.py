@@ -119,7 +119,8 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         )
     share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
     last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
-    if not curved and abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
+    heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
+    if heavy > 0.01 or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
         last = float(steps[-1])  # a body of the end moves the centre of mass
     return places, ways, np.append(steps, last), curved
 

@@ -111,9 +111,10 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
     raise_all(
         [f"{path.name}: {shown(one)} is no column: {near_name(one, tuple(UNITS))}" for one in names if one not in UNITS]
     )
-    if not {"x", "y"} <= {*names} or len(rows) < 3:
-        raise InputError(f"{path.name}: give two points or more in columns x, y and, in space, z, with a header")
-    scales = [in_si(f"1 {head[2]}", UNITS[head[1]], head[1]) if head and head[2] else 1.0 for head in heads]
+    if not {"x", "y"} <= {*names} or len({*names}) < len(names) or len(rows) < 3:
+        raise InputError(f"{path.name}: give two points or more in columns x, y and, in space, z, each with one header")
+    units = [(head[1], head[2] or "") for head in heads if head]
+    scales = [in_si(f"1 {unit}", UNITS[name], name) if unit not in ("", UNITS[name]) else 1.0 for name, unit in units]
     table = dict[str, Array]()
     for i, (name, scale) in enumerate(zip(names, scales, strict=True)):
         try:
