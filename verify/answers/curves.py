@@ -12,7 +12,7 @@ from verify.analysis.verdict import FINE, Margin
 from verify.answers.chains import steps_of
 from verify.blas import one_blas_thread
 from verify.engines.choice import default_steps
-from verify.engines.curved import CurvedChain, curved_chain
+from verify.engines.curved import CurvedChain, converged, curved_chain
 from verify.engines.damping import asked
 from verify.engines.description import MOST_LINKS, with_dashpots
 from verify.engines.rod import read_rod
@@ -70,7 +70,8 @@ def curve_chain(
 
 def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     """Verdict, joints and links, frequencies next to those of the rod, and how far its ends and length are off."""
-    hertz, (exact, orders), n = chain.frequencies_hz(n_modes=mode), chain.convergence(mode), chain.count
+    hertz, n = chain.frequencies_hz(n_modes=mode), chain.count
+    exact, orders = converged(chain.rod, chain.nodes, chain.kind, mode)
     if len(exact) < mode:
         raise InputError(f"count = {n}: the chain has {len(exact)} modes, raise it or lower mode")
     errors, total = hertz / exact - 1.0, float(chain.nodes[-1])

@@ -94,11 +94,7 @@ class CurvedChain(RigidChain):
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
-        return self.convergence(n_modes)[0]
-
-    def convergence(self, n_modes: int) -> tuple[Array, Array]:
-        """(estimated frequencies of the rod, observed orders), (n_modes,) each."""
-        return _converged(self.rod, self.nodes, self.kind, n_modes)
+        return converged(self.rod, self.nodes, self.kind, n_modes)[0]
 
     def rest_angle(self, j: int) -> float:
         """Rotation between the links at a joint, rad, 0 at the wall."""
@@ -163,17 +159,15 @@ def _half(turns: Array) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _converged(rod: Rod, nodes: tuple[float, ...], kind: Links, n_modes: int) -> tuple[Array, Array]:
-    """(frequencies, Hz, observed orders) by Richardson from links in one, two and four parts."""
-    n = len(nodes) - 1
+def converged(rod: Rod, nodes: tuple[float, ...], kind: Links, n_modes: int) -> tuple[Array, Array]:
+    """(frequencies of the rod, Hz, observed orders), (n_modes,), by Richardson from links in 1, 2 and 4 parts."""
+    n, hertz = len(nodes) - 1, list[Array]()
     parts = (1, 2, 4) if 4 * n * (1 + 2 * rod.in_space) <= MOST else (1, 2)
-    hertz = list[Array]()
     for part in parts:
         finer = np.interp(np.arange(n * part + 1) / part, np.arange(n + 1), nodes)
         hertz.append(curved_chain(rod, finer, kind).frequencies_hz(n_modes=n_modes))
     few = min(map(len, hertz))
-    steps = np.diff([one[:few] for one in hertz], axis=0)
-    orders = np.full(few, np.nan)
+    steps, orders = np.diff([one[:few] for one in hertz], axis=0), np.full(few, np.nan)
     if len(parts) == 3:
         with np.errstate(divide="ignore", invalid="ignore"):
             orders = np.log2(steps[0] / steps[1])

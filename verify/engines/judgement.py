@@ -44,6 +44,12 @@ def _from_wall(line: Line, beam: Beam, name: str) -> Beam:
     return beam
 
 
+def _judged(bending: list[Line], twists: list[Line], beam: Beam | None, theory: str) -> list[Judged]:
+    """The rules of a straight chain in each plane and, where a shaft explains it, in torsion."""
+    judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in bending]
+    return judged + [one for line in twists if (one := judge_twist(line, beam))]
+
+
 def judge_file(
     path: Path,
     beam: Beam | None,
@@ -73,11 +79,9 @@ def judge_file(
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
-    twists, rod = every[len(found) :], beam is None and needs_rod(every[0])
-    judged = judge_rod(every, path.name) if rod else []
+    rod = beam is None and needs_rod(every[0])
+    judged = judge_rod(every, path.name) if rod else _judged(found, every[len(found) :], beam, theory)
     setting = setting._replace(note="the drag of its medium is left out") if rod and setting.viscosity else setting
-    judged = judged or [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
-    judged += filter(None, (judge_twist(line, beam) for line in twists if not rod))
     lone = every[len(judged) :]
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]

@@ -115,14 +115,8 @@ def roll_pitch_yaw(turn: Array) -> Array:
 def quaternion(turn: Array) -> Array:
     """Quaternion of a rotation, (4,), its scalar first."""
     (cx, cy, cz), (sx, sy, sz) = (f(0.5 * roll_pitch_yaw(turn)) for f in (np.cos, np.sin))
-    return np.array(
-        [
-            cx * cy * cz + sx * sy * sz,
-            sx * cy * cz - cx * sy * sz,
-            cx * sy * cz + sx * cy * sz,
-            cx * cy * sz - sx * sy * cz,
-        ]
-    )
+    one, other = (cx * cy * cz, sx * cy * cz, cx * sy * cz, cx * cy * sz), (sx * sy, -cx * sy, sx * cy, -sx * sy)
+    return np.array([a + b * c for a, b, c in zip(one, other, (sz, sz, sz, cz), strict=True)])
 
 
 def notes(chain: RigidChain) -> str:
