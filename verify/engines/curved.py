@@ -111,9 +111,10 @@ def curved_chain(rod: Rod, nodes: Array, kind: Links = "chords") -> CurvedChain:
     chords = np.diff(places, axis=0)
     lengths = np.linalg.norm(chords, axis=1)
     middles, tangents = 0.5 * (nodes[1:] + nodes[:-1]), chords / lengths[:, None]
-    if np.einsum("ni,ni->n", tangents[1:], tangents[:-1]).min(initial=1.0) < BACK:
+    along = np.vstack([rod.tangent, tangents])
+    if np.einsum("ni,ni->n", along[1:], along[:-1]).min() < BACK:
         raise InputError("curve: two links point in opposite directions, give more links or points along the turn")
-    every = transported(np.vstack([rod.tangent, tangents]), rod.start, rod.at(np.append(0.0, middles))[:, 5])
+    every = transported(along, rod.start, rod.at(np.append(0.0, middles))[:, 5])
     first, frames = every[0], every[1:]
     if kind == "arcs":
         lengths = h

@@ -39,7 +39,9 @@ def needs_rod(line: Line) -> bool:
     """Whether a file is curved, or its masses and stiffnesses vary, which no beam of one mass per length explains."""
     lengths, masses = line.links.T[:2]
     odd, ei = abs(masses / lengths / np.median(masses / lengths) - 1.0) > UNEVEN, line.springs * half_links(lengths)
-    return line.curve.bent or bool(odd.sum() > max(1, len(odd) // 4) and np.ptp(ei[3:]) > ALIKE * ei[-1])
+    return line.curve.bent or bool(
+        odd.sum() > max(1, len(odd) // 4) and np.ptp(ei[min(3, len(ei) - 1) :]) > ALIKE * ei[-1]
+    )
 
 
 def judge_rod(lines: list[Line], name: str) -> list[Judged]:

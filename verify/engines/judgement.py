@@ -72,6 +72,8 @@ def judge_file(
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
     kind, solids, gravity, own = read(path)
     setting, every = setting_of(own, engine, step), lines(solids, path.name)
+    if (rod := beam is None and needs_rod(every[0])) and theory:
+        raise InputError(f"theory = {shown(theory)}: a chain that is curved or graded has none to choose, leave it out")
     if beam and every[0].curve.bent:
         raise InputError(f"{path.name}: its chain is curved and the beam is straight, give the file alone")
     in_space = len(found := [line for line in every if line.axis != "torsion"]) > 1 and all(one.solid for one in found)
@@ -79,7 +81,6 @@ def judge_file(
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
-    rod = beam is None and needs_rod(every[0])
     judged = judge_rod(every, path.name) if rod else _judged(found, every[len(found) :], beam, theory)
     setting = setting._replace(note="the drag of its medium is left out") if rod and setting.viscosity else setting
     lone = every[len(judged) :]
