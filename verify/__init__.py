@@ -16,7 +16,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   Contact, Foot                                                unilateral contact of sliders, feet of several points
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
-  choose, engine_chain                                         enough segments and elements; joints in N m/rad, files
+  choose, engine_chain, curve_chain                            enough segments and elements; joints in N m/rad, files
   compare_frequencies, judge_file                              a list of another program; a file of rigid bodies
   verdict                                                      how far a model can be trusted at a mode or a drive
   NonlinearHermite, BentElements, large_motion, NonlinearMotion    nonlinear elements: statics, rotation, time
