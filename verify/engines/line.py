@@ -110,7 +110,8 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         raise InputError(f"{name}: give two links or more, on a curve three")
     ways, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)
     if curved:
-        ways, steps = np.vstack([np.diff(places, axis=0), centres[-1:] - places[-1]]), np.diff(places, axis=0)
+        steps, tip = np.diff(places, axis=0), centres[-1:] - places[-1]
+        ways = np.vstack([steps, tip if tip.any() else steps[-1:]])
         ways, steps = ways / np.linalg.norm(ways, axis=1)[:, None], np.linalg.norm(steps, axis=1)
     centre = np.einsum("ni,ni->n", centres - places, ways)
     if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
