@@ -17,7 +17,7 @@ Public names (`help` of a name lists fields, shapes and units; everything is SI)
   free_vibration, FreeVibration                                a beam released from a shape, without forces
   bend, Bent                                                   a nonlinear chain under a large load at its tip
   bend_in_space, BentInSpace                                   the same in space, of rods curved at rest
-  choose, engine_chain                                         enough segments and elements; joints in N m/rad, files
+  choose, engine_chain, curve_chain                            enough segments and elements; joints in N m/rad, files
   compare_frequencies, judge_file                              a list of another program; a file of rigid bodies
   judge_case                                                   the record of a run of a case in any engine
   verdict                                                      how far a model can be trusted at a mode or a drive

@@ -13,6 +13,7 @@ from verify.analysis.comparison import ModeErrors as ModeErrors
 from verify.analysis.comparison import mode_errors as mode_errors
 from verify.analytic_modes import ExactModel as ExactModel
 from verify.answers.chains import engine_chain as engine_chain
+from verify.answers.curves import curve_chain as curve_chain
 from verify.answers.frequencies import compare_frequencies as compare_frequencies
 from verify.answers.sizes import choose as choose
 from verify.answers.trust import verdict as verdict

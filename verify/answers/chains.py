@@ -66,7 +66,7 @@ def engine_chain(
     names, highest = end.endswith((".json", ".csv")), 1 if request.in_hz else int(max(request.at))
     if step is None:
         count = count or fewest(beam, max(mode, highest), error, wall, in_space)
-        steps = _steps(engine, inf, bool(request.ratios[0]))[0] if engine else None
+        steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
         chain = damped(make(count), request, steps, drag=own)
         result = _chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
     else:
@@ -74,7 +74,7 @@ def engine_chain(
         if not engine:
             raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
         plain = [make(n) for n in ([count] if count else _counts(beam, max(mode, highest), error, wall, in_space))]
-        chosen, rows = _for_step(plain, request, _steps(engine, step, True), mode, error, own, own or names)
+        chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, own, own or names)
         result, chain = _chain_result(chosen.chain, mode, error), chosen.chain
         links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
         why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
@@ -90,7 +90,7 @@ def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> l
     return [*range(max(least - 1, len(beam.pieces), mode + 1, 2), most + 1)]
 
 
-def _steps(engine: str, step: float, damped: bool) -> list[Steps]:
+def steps_of(engine: str, step: float, damped: bool) -> list[Steps]:
     """The integrators of `engine` 'NAME' or 'NAME:INTEGRATOR' that are tried in turn. Raises InputError."""
     name, _, setting = engine.partition(":")
     row = integrator_of(name, setting)

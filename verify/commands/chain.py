@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import click
 
 from verify.answers.chains import engine_chain
+from verify.answers.curves import curve_chain
 from verify.commands.choose import relative_error
 from verify.commands.shared import (
     CHAINS,
@@ -42,6 +43,8 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
     "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
 )
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
+@click.option("--links", type=click.Choice(["chords", "arcs"]), default="chords", help="Of a curve. Default: chords.")
+@click.option("--section", default="", metavar="PHRASE", help="Of a curve: 'round 2 mm E=1GPa rho=1.2g/cm3'.")
 @click.option("--damping", default="0", metavar="Z", help=f"Damping ratio by dashpots, of mode 1, or {EXAMPLES[4:]}.")
 @click.option(
     "--engine", metavar="NAME[:INTEGRATOR]", default="", help="It runs in: MuJoCo, Exudyn:RK44. Default: --to's."
@@ -57,6 +60,8 @@ def chain(
     error: str,
     wall: str,
     in_space: bool,
+    links: str,
+    section: str,
     damping: str,
     engine: str,
     time_step: str | None,
@@ -68,19 +73,29 @@ def chain(
     Stiffnesses in N m/rad, dashpots, masses, inertias, and the frequency errors of exactly this chain.
     Example: `verify chain --beam "1 m x 40 x 8 mm steel, clamped-free" --count 20 --to beam.xml`, or with
     `--step 1ms --engine MuJoCo --damping "1% at 2" --mode 1` for a time step and a damping ratio.
+
+    SCENE may be a curve, curve.csv: points in columns x, y and z, with EI, EI2, GJ, rho_A or a section in columns, one
+    value for all by --set EI=0.02, or --section (see docs/engines.md).
     """
     limit, brief = relative_error(error), not any(formats.values())
-    result = engine_chain(
-        load_beam(scene, overrides),
-        count,
-        mode=mode,
-        error=limit,
-        wall=wall,
-        in_space=in_space,
-        damping=damping,
-        step=None if time_step is None else typed(time_step, Seconds, "step"),
-        engine=engine,
-        path=path,
+    shared: dict[str, Any] = {"mode": mode, "error": limit, "in_space": in_space, "damping": damping, "path": path}
+    if curved := scene.lower().endswith(".csv"):
+        if time_step or wall != DEFAULT.wall:
+            raise InputError("--step and --wall are not of a curve, leave them out")
+        result = curve_chain(scene, count, links=links, section=section, overrides=overrides, engine=engine, **shared)
+    elif section or links != "chords":
+        raise InputError("--section and --links are of a curve, curve.csv, leave them out")
+    result = (
+        result
+        if curved
+        else engine_chain(
+            load_beam(scene, overrides),
+            count,
+            wall=wall,
+            step=None if time_step is None else typed(time_step, Seconds, "step"),
+            engine=engine,
+            **shared,
+        )
     )
     if brief:
         result = replace(result, tables=[_shortened(result.tables[0]), *result.tables[1:]])

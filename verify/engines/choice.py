@@ -178,7 +178,7 @@ def trade(chains: Iterable[RigidChain], steps: Steps, *, modes: int = 3, armatur
             stable = step <= (1.0 if beta else MARGIN) * run.limit
             if beta and not (stable and (run.mass != every.mass).any()):
                 continue
-            errors = [step_errors(made, steps, axis, modes) for axis in chain.axes]
+            errors = [step_errors(made, steps, axis, modes) for axis in chain.motions]
             each = [np.stack([abs(one[0]), np.hypot(one[1], one[3]), abs(one[2])]).max(axis=0) for one in errors]
             shared = min(map(len, each))
             worst = np.max([one[:shared] for one in each], axis=0)
@@ -229,7 +229,7 @@ def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, 
     """
     engine, setting = steps[1:] if steps else ("MuJoCo", "implicitfast" if chain.damping else "RK4")
     found, limit, scheme = [inf], inf, scheme_of(engine, setting)
-    for axis in chain.axes:
+    for axis in chain.motions:
         run = simulated_chain(chain, 1.0, scheme, axis)
         limit = min(limit, run.limit)
         found.append(0.5 * run.limit)

@@ -26,6 +26,7 @@ from verify.errors import InputError
 from verify.exact.torsion import shafts, torsion_hz
 from verify.formatting import one_line
 from verify.problem.beam import Beam, check_features, in_plane, with_attachments
+from verify.problem.cross_section import merged, set_fields
 from verify.problem.point_attachments import PointSpring
 from verify.problem.supports import FIXED
 from verify.settings import WALLS, Theory
@@ -34,9 +35,9 @@ from verify.validation import check_choice, check_integer, check_number, check_t
 if TYPE_CHECKING:
     from verify.engines.steps import Simulated
 
-Axis = Literal["bending", "width", "torsion"]
+Axis = Literal["bending", "width", "torsion", "coupled"]
 AXES: tuple[Axis, ...] = ("bending", "width", "torsion")
-"""Rotation about -y, z and x; deflections in z and y."""
+"""Rotation about -y, z and x; deflections in z and y. All are "coupled" in a chain that is curved at rest."""
 MOST_LINKS = 2000
 """Largest N: the matrices are dense."""
 DENSE = 150
@@ -114,6 +115,7 @@ class RigidChain:
     steps: Steps | None = None
     remarks: tuple[str, ...] = ()
     meant: "RigidChain | None" = None
+    straight, along, reference = True, "the beam", "the exact beam"
     __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
@@ -125,6 +127,29 @@ class RigidChain:
     def axes(self) -> tuple[Axis, ...]:
         """Axes of the hinges."""
         return AXES if self.in_space else AXES[:1]
+
+    @property
+    def motions(self) -> tuple[Axis, ...]:
+        """Axes that vibrate apart."""
+        return self.axes
+
+    def drawn(self, j: int) -> tuple[float, float]:
+        """Width and thickness of a link, or twice its diameter, m; a hundredth of the length where unknown."""
+        ends, beam = np.cumsum([section.length for section in self.beam.section[:-1]]), self.beam
+        at = int(np.searchsorted(ends, self.links[j].start + self.links[j].centre))
+        fields = merged(beam.section[at], beam) if beam.section else set_fields(beam)
+        width, thick = (fields.get(one, fields.get("diameter", 0.01 * beam.length)) for one in ("width", "thickness"))
+        return width, thick
+
+    def rest_angle(self, j: int) -> float:
+        """Rotation between the links at a joint, rad."""
+        return 0.0
+
+    def rest(self, j: int) -> tuple[Array, Array]:
+        """(place of joint j in the link before, m, rotations from there to its axes and on to its link) at rest."""
+        return np.array([self.links[j - 1].length if j else self.joints[0].position, 0.0, 0.0]), np.stack(
+            [np.eye(3)] * 2
+        )
 
     @property
     def supported(self) -> tuple[bool, bool]:

@@ -12,9 +12,10 @@ import numpy as np
 
 from verify.analysis.plausibility import unit_margins
 from verify.analysis.verdict import FINE, Margin, per_cent
+from verify.engines.curved_files import judge_rod, needs_rod, weight
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
-from verify.engines.rules import SAME, SQUARE, Judged, judge
+from verify.engines.rules import SAME, SQUARE, Judged, half_links, judge
 from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
@@ -43,6 +44,12 @@ def _from_wall(line: Line, beam: Beam, name: str) -> Beam:
     return beam
 
 
+def _judged(bending: list[Line], twists: list[Line], beam: Beam | None, theory: str) -> list[Judged]:
+    """The rules of a straight chain in each plane and, where a shaft explains it, in torsion."""
+    judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in bending]
+    return judged + [one for line in twists if (one := judge_twist(line, beam))]
+
+
 def judge_file(
     path: Path,
     beam: Beam | None,
@@ -65,44 +72,50 @@ def judge_file(
         raise InputError(f"corrected = {shown(str(corrected))}: the format stays, end the name with {path.suffix}")
     kind, solids, gravity, own = read(path)
     setting, every = setting_of(own, engine, step), lines(solids, path.name)
+    if (rod := beam is None and needs_rod(every[0])) and theory:
+        raise InputError(f"theory = {shown(theory)}: a chain that is curved or graded has none to choose, leave it out")
+    if beam and every[0].curve.bent:
+        raise InputError(f"{path.name}: its chain is curved and the beam is straight, give the file alone")
     in_space = len(found := [line for line in every if line.axis != "torsion"]) > 1 and all(one.solid for one in found)
     theory = theory or ("rayleigh" if in_space else "euler-bernoulli")
     beam = beam and _from_wall(found[0], beam, path.name)
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
-    judged = [judge(line, beam and in_plane(beam, line.axis), theory) for line in found]
-    judged += filter(None, (judge_twist(line, beam) for line in every[len(found) :]))
+    judged = judge_rod(every, path.name) if rod else _judged(found, every[len(found) :], beam, theory)
+    setting = setting._replace(note="the drag of its medium is left out") if rod and setting.viscosity else setting
     lone = every[len(judged) :]
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
-    each, joints, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in judged), strict=True)
+    motions = judged[: 1 if rod else None]  # of a rod all axes vibrate together
+    each, margins_of, worse, data = zip(*(_assess(one, modes, within) for one in motions), strict=True)
     rows, margins = list(itertools.chain(*each)), list(itertools.chain(*margins_of))
-    exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(judged), np.nan)] * len(lone)
+    exact = [one["exact_hz"] for one in data] + [np.full(len(rows) // len(motions), np.nan)] * len(lone)
     run = partial(judge_runs, exact=exact, beam=judged[0].present.beam, setting=setting, within=within)
-    ran = run([*(one.line for one in judged), *lone])
+    ran = run([judged[0].present] if rod else [*(one.line for one in judged), *lone])
     units = unit_margins(beam or judged[0].correct.beam)
-    others = [*units, *ran.margins, *under_gravity(judged, solids, gravity, within)]
-    tables = [Table("Frequencies", columns, rows), *ran.tables, *joints]
+    others = [*units, *ran.margins, *(weight if rod else under_gravity)(judged, solids, gravity, within)]
+    notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts."] * rod
+    tables = [Table("Frequencies", columns, rows, notes), *ran.tables, *map(_joints, judged)]
     warnings = [text for one in judged for text in one.advice]
-    clashes = contradictions(found, axes, beam)
+    clashes, changes = contradictions(found, axes, beam), _changes(judged)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
         others.append(Margin(size=size, fine=within, limit=within, harm="premise", **words))
     warnings += [*ran.warnings, *_hints(solids, judged, beam, lone), *filter(None, worse)]
-    if corrected and (clashes or any(worse)):
-        why = clashes[0][-1] if clashes else "it would be worse"
+    if corrected and (clashes or any(worse) or (rod and judged[0].odd)):
+        why = clashes[0][-1] if clashes else "it would be worse" if any(worse) else "a joint is off the law"
         warnings.append(f"{shown(str(corrected))} is not written: {why}")
     elif corrected:
         right = [one.line._replace(springs=one.springs) for one in judged]
-        last = run([*right, *lone]).data.get("within", 0.0)
-        warnings.append(_write(path, kind, solids, _changes(judged), corrected, 0.0 if step else last))
+        last = run([judged[0].correct] if rod else [*right, *lone]).data.get("within", 0.0)
+        warnings.append(_write(path, kind, solids, changes, corrected, 0.0 if step else last))
         warnings += [f"run {shown(str(corrected))} at a time step of {with_unit(last, 's')}"] if step and last else []
-    rules = [f"{one.line.axis}: {one.rule}, {STIFFNESS[one.line.turns]} = {one.stiffness:.6g} N m2" for one in judged]
+    rules = [f"{one.line.axis}: {one.rule}, {STIFFNESS[one.line.turns]} {one.means}" for one in judged]
     sizes = f"{data[0]['links']} rigid links, {data[0]['length']:.6g} m, {data[0]['mass_per_length']:.6g} kg/m"
     summary = f"{'; '.join([sizes, *rules])}. {ran.summary}".strip()
     worst = max([one.size for one in others] + [float(abs(one["error"]).max()) for one in data])
     margins = others + (margins if ran.data else [in_space_only(one) for one in margins])
-    known = {"passed": worst <= within, "chains": list(data), "run": ran.data}
+    known = {"passed": worst <= within, "chains": list(data), "rules": rules, "run": ran.data}
     return Result(summary, tables, warnings=warnings, margins=margins, data=known)
 
 
@@ -112,35 +125,46 @@ def _changes(judged: list[Judged]) -> dict[str, float]:
     return {name: k for pairs in each[::-1] for name, k, old in pairs if name and abs(k - old) > SAME * k}
 
 
-def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[Margin], str, dict[str, Any]]:
-    """(rows of frequencies, joints, margins, why correct joints do not help, data) of a chain."""
+def _joints(one: Judged) -> "Table":
+    """Joints of a chain, of one that means a rod with the rest angles, the links beyond and what they mean."""
     from verify.report.result import Column, Table
 
-    n, axis, hertz = len(one.springs), one.line.axis, one.present.frequencies_hz(one.line.turns, modes)
+    line, number = one.line, range(len(one.springs))
+    columns, cells = [Column("joint"), Column("name")], list[Any]([number, line.joints])
+    if not one.present.straight:
+        lengths = line.links[:, 0]
+        columns += [Column("rest angle", "deg", ".4g"), Column("length", "m", ".5g")]
+        columns += [Column(STIFFNESS[line.turns], "N m2", ".5g")]
+        cells += [np.degrees([one.present.rest_angle(j) for j in number]), lengths, line.springs * half_links(lengths)]
+    columns += [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
+    changes = one.springs / np.where(line.springs > 0.0, line.springs, np.nan) - 1.0
+    cells += [line.springs, one.springs, np.where(abs(changes) > SAME, changes, np.nan)]
+    columns.append(Column("change", format="+.3g", percent=True))
+    shown = [[None if isinstance(x, float) and np.isnan(x) else x for x in each] for each in cells]
+    return Table(f"Joints in {line.axis}", columns, list(zip(*shown, strict=True)))
+
+
+def _assess(one: Judged, modes: int, within: float) -> tuple[Any, list[Margin], str, dict[str, Any]]:
+    """(rows of frequencies, margins, why correct joints do not help, data) of a chain."""
+    n, hertz, changes = len(one.springs), one.present.frequencies_hz(one.line.turns, modes), _changes([one])
+    axis = one.line.axis if one.present.straight else one.present.motions[0]
     m, exact = len(hertz), one.present.exact_hz(one.line.turns, len(hertz))
     errors, after = hertz / exact - 1.0, one.correct.frequencies_hz(one.line.turns, m) / exact - 1.0
     rows = list(zip([axis] * m, range(1, m + 1), exact, hertz, errors, after, strict=True))
-    springs = [Column(name, "N m/rad", ".6g") for name in ("present", "correct")]
-    change = Column("change", format="+.3g", percent=True)
-    pairs = [[None if np.isnan(k) else float(k) for k in each] for each in (one.line.springs, one.springs)]
-    changes = [new / old - 1.0 if old and new else None for old, new in zip(*pairs, strict=True)]
-    changes = [change if change and abs(change) > SAME else None for change in changes]
-    each = list(zip(range(n), one.line.joints, *pairs, changes, strict=True))
-    joints = Table(f"Joints in {axis}", [Column("joint"), Column("name"), *springs, change], each)
     limits: dict[str, Any] = {"fine": within, "limit": within}
     margins, text, worst = list[Margin](), "; ".join(one.faults), int(abs(errors).argmax())
     size, where = float(abs(errors[worst])), f"at mode {worst + 1} in {axis}"
     cause, worse = _cause(one), ""
     lost = np.flatnonzero(abs(after) > np.maximum(abs(errors), NOTICED * within))
-    if any(changes) and len(lost):
+    if changes and len(lost):
         numbers, (old, new) = ", ".join(str(1 + mode) for mode in lost), (100.0 * x[lost[0]] for x in (errors, after))
         worse = f"errors of the file cancel at mode {numbers} in {axis}, the joints below are worse"
         worse += f" ({old:+.3g} to {new:+.3g} %): {cause}"
-    remedy = "set the joints below" + f", {cause}" * bool(one.odd) if any(changes) and not worse else cause
+    remedy = "set the joints below" + f", {cause}" * bool(one.odd) if changes and not worse else cause
     if text:
         failure = f"{text}: {per_cent(size)} {where}"
         margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
-    if (any(changes) and not worse) or not text:
+    if (changes and not worse) or not text:
         size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
         what = f"{n} links with correct joints" + f", but {'; '.join(one.links)}" * bool(one.links)
         margins.append(Margin(name=what, size=size, where=where, remedy=cause, **limits))
@@ -148,7 +172,7 @@ def _assess(one: Judged, modes: int, within: float) -> tuple[Any, "Table", list[
     about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
     about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
     about |= {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after, "odd": one.odd}
-    return rows, joints, margins, worse, about
+    return rows, margins, worse, about
 
 
 def _cause(one: Judged) -> str:
@@ -162,7 +186,8 @@ def _cause(one: Judged) -> str:
     if one.links:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
-        return f"set joint {', '.join(one.odd[:MANY])} or give a scene that has it"
+        text = " or give a scene that has it" * (not one.line.curve.bent)
+        return f"set joint {', '.join(one.odd[:MANY])}{text}"
     return "give more links"
 
 

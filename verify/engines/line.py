@@ -1,4 +1,4 @@
-"""The straight chain of rigid links among the bodies and joints of a file."""
+"""The chain of rigid links among the bodies and joints of a file, straight or curved at rest."""
 
 import itertools
 from typing import NamedTuple
@@ -12,6 +12,8 @@ from verify.errors import InputError, shown
 
 STRAIGHT = 1e-3
 """Largest distance from the line of the chain over its length, and deviation of a hinge from a right angle, rad."""
+BOW, TURN = 0.1, 0.4
+"""On a curve: of a centre of mass from its chord over the length, and of a hinge, half a rest angle off."""
 
 
 class Line(NamedTuple):
@@ -35,11 +37,25 @@ class Line(NamedTuple):
     ball: bool
     dashpots: Array
     armatures: Array
+    curve: "Curve"
 
     @property
     def turns(self) -> Axis:
         """The axis of its chain alone: "torsion", or "bending" in either plane."""
         return "torsion" if self.axis == "torsion" else "bending"
+
+
+class Curve(NamedTuple):
+    """Places of the joints and the end at rest, (N + 1, 3), m, directions of links, (N, 3), of the hinges of a line.
+
+    `bodies`: masses, (N,), centres, (N, 3), inertias about them, (N, 3, 3), of links with what is fixed to them.
+    """
+
+    places: Array
+    ways: Array
+    bodies: tuple[Array, Array, Array]
+    hinges: Array
+    bent: bool
 
 
 def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]]]:
@@ -81,48 +97,91 @@ def _chain(solids: list[Solid], name: str) -> list[tuple[list[Move], list[Solid]
     return parts
 
 
-def lines(solids: list[Solid], name: str) -> list[Line]:
-    """The chain in bending in each plane of its hinges, in torsion. Raises InputError for what is no straight chain."""
-    parts = _chain(solids, name)
-    mains, hinges = [members[0] for _, members in parts], [move for moves, _ in parts for move in moves]
+def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Array, Array, Array, bool]:
+    """(places of the joints, directions, lengths of the links, whether they are on a curve). Raises InputError."""
+    mains = [members[0] for _, members in parts]
     places = np.array([moves[-1].at if moves else members[0].origin for moves, members in parts])
+    centres, masses = np.array([one.centre for one in mains]), np.array([one.mass for one in mains])
     along = (places[-1] - places[0]) / (np.linalg.norm(places[-1] - places[0]) or 1.0)
-    x, centres = (places - places[0]) @ along, np.array([one.centre for one in mains])
-    off = [places - places[0] - np.outer(x, along), centres - places - np.outer((centres - places) @ along, along)]
-    if not along.any() or max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * x[-1]:
-        raise InputError(f"{name}: its joints and centres of mass are on no straight line, give two links or more")
-    masses, centre, steps = np.array([one.mass for one in mains]), (centres - places) @ along, np.diff(x)
-    last = float(centre[-1] / max(np.median(centre[:-1] / steps), 0.1)) or float(steps[-1])
-    if abs(masses[-1] / last / np.median(masses[:-1] / steps) - 1.0) > 0.01:
+    off = [one - np.outer(one @ along, along) for one in (places - places[0], centres - places)]
+    reach = float(along @ (places[-1] - places[0]))
+    curved = not reach or bool(max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * reach)
+    if len(parts) < 2 + curved:
+        raise InputError(f"{name}: give two links or more, on a curve three")
+    ways, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)
+    if curved:
+        steps, tip = np.diff(places, axis=0), centres[-1:] - places[-1]
+        ways = np.vstack([steps, tip if tip.any() else steps[-1:]])
+        ways, steps = ways / np.linalg.norm(ways, axis=1)[:, None], np.linalg.norm(steps, axis=1)
+    centre = np.einsum("ni,ni->n", centres - places, ways)
+    if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
+        raise InputError(
+            f"{name}: centres of mass are off the lines between its joints, give links from joint to joint"
+        )
+    share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
+    last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
+    heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
+    if heavy > 0.01 or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
         last = float(steps[-1])  # a body of the end moves the centre of mass
-    across = next((one.axis for one in hinges if one.stiffness and abs(one.axis @ along) < STRAIGHT), along)
-    turned = [across, np.cross(along, across), along]
-    if across is along or any(max(abs(one.axis @ about) for about in turned) < 1.0 - STRAIGHT for one in hinges):
-        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
+    return places, ways, np.append(steps, last), curved
+
+
+def lines(solids: list[Solid], name: str) -> list[Line]:
+    """The chain in bending in each plane of its hinges, in torsion, straight or along a curve.
+
+    Raises InputError for what is no chain of links with hinges along or across them.
+    """
+    parts = _chain(solids, name)
+    mains, (places, ways, lengths, curved) = [members[0] for _, members in parts], _links(parts, name)
+    turned = _axes(parts, ways, name, curved)
     whole = [_joined(members) for _, members in parts]
-    masses, centre = np.array([one.mass for one in whole]), np.array([one.centre for one in whole] - places) @ along
-    prism, spins = masses * np.append(steps, last) ** 2 / 6.0, np.array([along @ one.inertia @ along for one in whole])
-    apart = np.array([np.trace(one.inertia) for one in whole]) - prism - 2.0 * spins
+    masses, inertias = np.array([one.mass for one in whole]), np.array([one.inertia for one in whole])
+    centre = np.einsum("ni,ni->n", np.array([one.centre for one in whole]) - places, ways)
+    prism, spins = masses * lengths**2 / 6.0, np.einsum("ni,nij,nj->n", ways, inertias, ways)
+    apart = np.trace(inertias, axis1=1, axis2=2) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
+    ends = np.vstack([places, places[-1] + lengths[-1] * ways[-1]])
+    bodies = masses, np.array([one.centre for one in whole]), inertias
     for axis, about in zip(AXES, turned, strict=True):
-        own = [[move for move in moves if abs(move.axis @ about) > 0.9] for moves, _ in parts]
+        own = [[move for move in moves if abs(move.axis @ e) > 0.8] for e, (moves, _) in zip(about, parts, strict=True)]
         if not any(move.stiffness for moves in own for move in moves):
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) > 1 or (axis != "torsion" and not (moves and moves[0].stiffness)):
                 text = "has no hinge with a stiffness" if len(moves) < 2 else "has two hinges"
                 remedy = "give it one, or fix the body to the one before" if len(moves) < 2 else "give it one"
-                raise InputError(f"{name}: {shown(mains[j].name)} {text} about {_direction(about)}, {remedy}")
+                raise InputError(f"{name}: {shown(mains[j].name)} {text} about {_direction(about[j])}, {remedy}")
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
-        links = [np.append(steps, last), masses, centre, np.array([about @ one.inertia @ about for one in whole])]
+        links = [lengths, masses, centre, np.einsum("ni,nij,nj->n", about, inertias, about)]
         joints = [moves[0].joint if moves else "" for moves in own]
-        others = [
+        dashpots, armatures = (
             np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")
-        ]
+        )
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
-        seen = _direction(about), _direction(np.cross(along, about)), _deep(mains, along, about, solid)
-        found.append(Line(axis, joints, springs, np.stack(links, axis=1), solid, *seen, ball, *others))
+        seen = _direction(about[0]), _direction(np.cross(ways[0], about[0])), _deep(mains, ways, about, solid)
+        hinges = np.array([moves[0].axis if moves else e for moves, e in zip(own, about, strict=True)])
+        curve = Curve(ends, ways, bodies, hinges, curved)
+        found.append(Line(axis, joints, springs, np.stack(links, 1), solid, *seen, ball, dashpots, armatures, curve))
     return found
+
+
+def _axes(parts: list[tuple[list[Move], list[Solid]]], ways: Array, name: str, curved: bool) -> list[Array]:
+    """Directions of the hinges across, of those at right angles, and along the links at every joint, (N, 3) each."""
+    hinges = [(j, one) for j, (moves, _) in enumerate(parts) for one in moves]
+    before = np.vstack([ways[:1], ways[:-1]]) + ways
+    before /= np.linalg.norm(before, axis=1)[:, None]
+    free = TURN if curved else STRAIGHT
+    across = next((one.axis for j, one in hinges if one.stiffness and abs(one.axis @ before[j]) < free), None)
+    found = list[Array]()
+    for j, t in enumerate(before if across is not None else ()):
+        near = [one.axis for i, one in hinges if i == j and abs(one.axis @ t) < free] if curved else []
+        across = max(near, key=lambda e: abs(e @ across), default=across)
+        across = across - (across @ t) * t
+        across = across / np.linalg.norm(across)
+        found.append(np.stack([across, np.cross(t, across), t]))
+    if not found or any(max(abs(found[j] @ one.axis)) < 1.0 - (BOW if curved else STRAIGHT) for j, one in hinges):
+        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
+    return list(np.array(found).transpose(1, 0, 2))
 
 
 def _direction(about: Array) -> str:
@@ -130,11 +189,11 @@ def _direction(about: Array) -> str:
     return " ".join(f"{one:.3g}" for one in np.round(about if about.sum() > 0.0 else -about, 6) + 0.0)
 
 
-def _deep(mains: list[Solid], along: Array, about: Array, solid: bool) -> tuple[float, float]:
+def _deep(mains: list[Solid], ways: Array, about: Array, solid: bool) -> tuple[float, float]:
     """(b/a)^2 of a section of depth b across the hinges and a along them, by what is drawn and by inertias, or NaN."""
-    across = np.cross(along, about)
-    drawn = [(across @ one.shape @ across, about @ one.shape @ about) for one in mains if one.shape.any()]
-    spins = [[d @ one.inertia @ d for d in (along, about, across)] for one in mains]
+    rows = list(zip(mains, ways, about, np.cross(ways, about), strict=True))
+    drawn = [(d @ one.shape @ d, a @ one.shape @ a) for one, _, a, d in rows if one.shape.any()]
+    spins = [[d @ one.inertia @ d for d in each] for one, *each in rows]
     inert = [(x + a - d, x + d - a) for x, a, d in spins] if solid else []
     pairs = [np.array([pair for pair in each if min(pair) > 0.0]) for each in (drawn, inert)]
     shape, spin = (float(np.median(one[:, 0] / one[:, 1])) if len(one) else np.nan for one in pairs)

@@ -39,6 +39,7 @@ class Judged(NamedTuple):
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
     of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
+    `means`: EI or GJ in words.
     """
 
     line: Line
@@ -51,6 +52,7 @@ class Judged(NamedTuple):
     links: list[str]
     advice: list[str]
     odd: list[str]
+    means: str
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -69,7 +71,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     rule, spacing, stiffness, law = _fitted(line, lengths / scale, expected, support, meant)
     along = (law.joints, np.ones(n)) if law.kind == "smooth" else (np.full(n, law.links[0]), law.links[0] / law.links)
     soft = lengths / scale * along[1]
-    reference, base = meant or stiffness, _half_links(soft) * law.links[0] / along[0]
+    reference, base = meant or stiffness, half_links(soft) * law.links[0] / along[0]
     even = np.ptp(soft[:3]) < 1e-4 * soft[0]
     best = "gregory" if even else "half"
     hinged = reference / base / wall_factors((support, "free"), n, best)[:-1]
@@ -82,7 +84,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     right = wall_label(best), *([] if even else [SERIES])
     wall = [rule] if rule not in right and support == "clamped" else []
     joints, links = _faults(line, expected, sum(one.mass for one in beam.mass), spacing, stiffness / reference)
-    odd = [law.text(line.joints, k * _half_links(lengths / scale) / law.joints)] if law.odd else []
+    odd = [law.text(line.joints, k * half_links(lengths / scale) / law.joints)] if law.odd else []
     inside = reference / base
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
@@ -90,7 +92,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     names = [line.joints[j] for j in (*law.odd, *steps) if meant is None]
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
-    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names)
+    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, written(stiffness))
 
 
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
@@ -102,7 +104,12 @@ def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayl
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)
 
 
-def _half_links(soft: Array) -> Array:
+def written(stiffness: float) -> str:
+    """EI or GJ in words."""
+    return f"= {stiffness:.6g} N m2"
+
+
+def half_links(soft: Array) -> Array:
     """Two half links in series at the joints: their length over EI, (N,), of that of the links."""
     return np.asarray(0.5 * (np.append(soft[0], soft[:-1]) + soft))
 
@@ -121,7 +128,7 @@ def _fitted(line: Line, soft: Array, expected: Array, support: str, meant: float
 
     `meant`: EI of a scene. The law has no kind where one EI and the rule explain all joints. Raises InputError.
     """
-    (lengths, masses, *_), k, n, bases = line.links.T, line.springs, len(soft), [_half_links(soft)]
+    (lengths, masses, *_), k, n, bases = line.links.T, line.springs, len(soft), [half_links(soft)]
     if np.ptp(lengths) > 1e-4 * lengths.mean():
         bases += [np.full(n, lengths.mean()), lengths, np.append(lengths[0], lengths[:-1])]
     rule, spacing, stiffness = _rule(k, bases, support, _weld(soft))
@@ -129,16 +136,28 @@ def _fitted(line: Line, soft: Array, expected: Array, support: str, meant: float
         return rule, spacing, stiffness, Law("", np.full(n, stiffness), np.full(n, stiffness), [])
     if meant is None and np.sum(abs(masses - expected) > 0.01 * expected) > max(1, n // 4):
         raise InputError("masses and stiffnesses of the links vary: give the tapered or stepped beam as a scene")
-    law = law_of(k * bases[0], line.joints, meant)
-    steady = np.where(np.isin(range(n), law.odd), 1.0, k * bases[0] / law.joints)
+    rule, law = at_wall(k * bases[0], line.joints, support, soft, meant)
+    return rule, 0, float(law.links[0]), law
+
+
+def at_wall(values: Array, names: list[str], support: str, soft: Array, meant: float | None = None) -> tuple[str, Law]:
+    """(rule in words of the joints at the wall, law of EI, without a `meant` EI without one of them off the rule).
+
+    `values`: EI of the joints, (N,); `soft`: lengths of the links over EI. Raises InputError.
+    """
+    n = len(values)
+    rule, _, level = _rule(values, [np.ones(n)], support, _weld(soft))
+    if rule != IRREGULAR:
+        return rule, Law("constant", np.full(n, level), np.full(n, level), [])
+    law = law_of(values, names, meant)
+    steady = np.where(np.isin(range(n), law.odd), 1.0, values / law.joints)
     alike = 0.5 * ROUGH if law.kind in ("smooth", "nearly constant") else ALIKE
     rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft), alike)
     for j in (1, 2) if rule == IRREGULAR and meant is None and n > 3 else ():  # or one of them is off a rule, too
         others = _rule(np.where(np.arange(n) == j, 0.0, steady), [np.ones(n)], support, _weld(soft))[0]
         if others != IRREGULAR:
-            rule, law = others, law._replace(odd=[j, *law.odd])
-            break
-    return rule, 0, float(law.links[0]), law
+            return others, law._replace(odd=[j, *law.odd])
+    return rule, law
 
 
 def _advice(line: Line, law: Law, inside: Array, steps: Array, hinged: Array | None) -> list[str]:

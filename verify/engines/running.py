@@ -72,8 +72,12 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
     return setting._replace(step=step or setting.step)
 
 
-def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
-    """The matrices of a line in the steps of a setting."""
+def _motion(line: Line | RigidChain, exact: Array, beam: Beam, setting: Setting) -> Motion:
+    """The matrices of a line, or of a chain of all its axes, in the steps of a setting."""
+    if isinstance(line, RigidChain):
+        run = simulated_chain(line, setting.step, scheme_of(*setting[:2]))
+        bare = replace(run, mass=line.matrices()[0])
+        return Motion(line.motions[0], exact, bare if (bare.mass != run.mass).any() else run, run)
     chain = replace(rigid(line, line.springs, beam, ""), viscosity=setting.viscosity)
     mass, stiffness = chain.matrices(line.turns)
     damping, armature = (np.diag(one[~np.isnan(line.springs)]) for one in (line.dashpots, line.armatures))
@@ -82,7 +86,9 @@ def _motion(line: Line, exact: Array, beam: Beam, setting: Setting) -> Motion:
     return Motion(line.axis, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
 
 
-def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, setting: Setting, within: float) -> "Result":
+def judge_runs(
+    lines: Sequence[Line | RigidChain], exact: Sequence[Array], beam: Beam, setting: Setting, within: float
+) -> "Result":
     """Chains in the steps of a setting, `exact` undamped Hz of their beams; no `data` where the setting is unknown.
 
     `data["within"]`: step, s, within all errors, 0 where this one is or none is known.
@@ -129,7 +135,7 @@ def judge_runs(lines: Sequence[Line], exact: Sequence[Array], beam: Beam, settin
 def chain_runs(chain: RigidChain, steps: Steps, modes: int, within: float) -> "tuple[Table, Margin, list[str]]":
     """(modes as meant and simulated, margin of the one that differs most, warnings) of a chain for its steps."""
     motions, scheme = list[Motion](), scheme_of(*steps[1:])
-    for axis in chain.axes:
+    for axis in chain.motions:
         file, run = (simulated_chain(one, steps.step, scheme, axis) for one in (chain.meant or chain, chain))
         motions.append(Motion(axis, chain.exact_hz(axis, modes), file, run))
     rows, step = [row for one in motions for row in one.rows()], with_unit(steps.step, "s")

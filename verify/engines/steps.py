@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -300,17 +300,18 @@ def simulated_chain(chain: RigidChain, step: float, scheme: Scheme, axis: Axis |
     """A chain in the steps of a scheme, with armature and drag, about all axes of its hinges or one."""
     from scipy.linalg import block_diag
 
-    axes, damping, labels = chain.axes if axis is None else (axis,), list[Array](), list[str]()
+    axes, damping, labels = chain.motions if axis is None else (axis,), list[Array](), list[str]()
     mass, stiffness = (list(each) for each in zip(*map(chain.matrices, axes), strict=True))
     for i, about in enumerate(axes):
         unknowns = chain.unknowns(about)
-        hinges = [None if name.startswith("slide") else chain.joints[j].hinge(about) for name, j, _ in unknowns]
+        turns: Any = [name.partition("_")[2] if name.startswith("joint") else "" for name, *_ in unknowns]
+        hinges = [chain.joints[j].hinge(turn) for turn, (_, j, _) in zip(turns, unknowns, strict=True)]
         damping.append(np.diag([hinge.damping if hinge else 0.0 for hinge in hinges]))
         mass[i] = mass[i] + np.diag([hinge.armature if hinge else 0.0 for hinge in hinges])
         for _, weights, _, dashpot in chain.grounded(about):
             damping[-1] += dashpot * np.outer(weights, weights)
         if chain.viscosity:
             damping[-1] += chain.drag(about)
-        labels += [about] * len(unknowns)
+        labels += [turn or about for turn in turns]
     constraints = block_diag(*map(chain.constraints, axes))
     return Simulated(block_diag(*mass), block_diag(*damping), block_diag(*stiffness), step, scheme, labels, constraints)

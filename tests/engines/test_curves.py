@@ -1,0 +1,224 @@
+"""Rods along a curve as chains: against a Ritz method, straight beams, and the engines' own matrices."""
+
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from tests.engines.test_chain_files import as_mjcf, as_urdf, by_script, hertz
+from tests.reference.curved_rod import rod_hz
+from verify import Beam, ExactModel, Section
+from verify.answers.chains import engine_chain
+from verify.answers.curves import curve_chain
+from verify.cli import status_of
+from verify.engines.curved import curved_chain
+from verify.engines.rod import read_rod
+from verify.errors import InputError
+
+R, RISE = 0.3, 0.12
+SPEED = np.hypot(R, RISE)
+"""Of a helix, m/rad: curvature R/SPEED^2, torsion RISE/SPEED^2."""
+
+
+def table(path, **columns):
+    rows = zip(*(np.broadcast_to(one, np.shape(columns["x"])).tolist() for one in columns.values()), strict=True)
+    path.write_text("\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+    return path
+
+
+def helix_frame(s, roll=0.0):
+    """Tangent, u x tangent, u: Frenet's frame less its torsion, from the normal nearest to z, and a roll."""
+    a = s / SPEED
+    t = np.array([R * np.cos(a), R * np.sin(a), RISE]) / SPEED
+    n = np.array([-np.sin(a), np.cos(a), 0.0])
+    angle = np.pi / 2 - RISE / SPEED**2 * s + roll
+    u = np.cos(angle) * n + np.sin(angle) * np.cross(t, n)
+    return np.stack([t, np.cross(u, t), u], axis=1)
+
+
+def helix(path, turn=2.4, points=60):
+    """(file, frequencies by Ritz) of a helix whose EI, mass and roll are linear in s."""
+    a = np.linspace(0.0, turn, points)
+    length, f = SPEED * turn, a / turn
+    ei, ei2, gj = 2.0 * (1 - 0.4 * f), 5.0 * (1 - 0.4 * f), 1.1 * (1 - 0.2 * f)
+    path = table(path, x=R * np.sin(a), y=R * (1 - np.cos(a)), z=RISE * a, EI=ei, EI2=ei2, GJ=gj,
+                 rho_A=0.4 * (1 - 0.3 * f), rho_Ip=3e-5, roll=40.0 * f)  # fmt: skip
+    at = lambda s: s / length  # noqa: E731
+    stiff = lambda s: [1.1 * (1 - 0.2 * at(s)), 2.0 * (1 - 0.4 * at(s)), 5.0 * (1 - 0.4 * at(s))]  # noqa: E731
+    frame = lambda s: helix_frame(s, np.radians(40.0 * at(s)))  # noqa: E731
+    spin = 3e-5 * np.array([1, 2 / 7, 5 / 7])
+    return path, rod_hz(frame, stiff, lambda s: 0.4 * (1 - 0.3 * at(s)), lambda s: spin, length, 5)
+
+
+def test_a_helix_converges_to_ritz_with_order_two(tmp_path):
+    path, exact = helix(tmp_path / "helix.csv")
+    errors = [np.array(curve_chain(path, n, mode=5).data["expected"]["coupled"]["frequencies_hz"]) for n in (20, 40)]
+    errors = [one / exact[:3] - 1.0 for one in errors]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    assert 5e-4 < abs(errors[0]).max() < 3e-3
+    found = curve_chain(path, 20, mode=5)
+    assert found.data["rod_hz"] == pytest.approx(exact, rel=2e-4)  # the estimate is ten times as good as the chain
+
+
+ARC = np.linspace(0.0, np.pi / 2, 50)
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_quarter_circle_in_its_plane_and_out_of_it(space, tmp_path):
+    path = table(tmp_path / "arc.csv", x=np.sin(ARC), y=1 - np.cos(ARC), EI=2.0, EI2=3.0, GJ=1.5, rho_A=0.7,
+                 rho_Ip=1e-3)  # fmt: skip
+    spin = 1e-3 * np.array([1, 0.4, 0.6]) * space
+
+    def frame(s):
+        return np.array([[np.cos(s), 0, -np.sin(s)], [np.sin(s), 0, np.cos(s)], [0, -1, 0]])
+
+    exact = rod_hz(frame, lambda s: [1.5, 2, 3], lambda s: 0.7, lambda s: spin, np.pi / 2, 3, planar=not space)
+    rod = read_rod(path, in_space=space)
+    chains = [curved_chain(rod, np.linspace(0.0, rod.s[-1], n + 1)) for n in (50, 100)]
+    errors = [one.frequencies_hz(n_modes=3) / exact - 1 for one in chains]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.12)
+    assert 2e-5 < abs(errors[0]).max() < 4e-4
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_straight_curve_is_the_straight_beam(space, tmp_path):
+    beam = Beam(
+        length=0.9, width=0.04, thickness=0.007, youngs_modulus=7e10, density=2700.0, supports=("clamped", "free")
+    )
+    path = table(tmp_path / "line.csv", **{"x": [0.0, 0.31, 0.9], "y": 0.0} | ({"z": 0.0} if space else {}))
+    one = curve_chain(path, 11, section="40 x 7 mm E=70GPa rho=2700kg/m3", in_space=space).data
+    two = engine_chain(beam, 11, in_space=space).data
+    for mine, other in zip(one["joints"], two["joints"], strict=True):
+        for hinge, right in zip(mine.hinges, other.hinges, strict=True):
+            assert (hinge.axis, hinge.stiffness) == (right.axis, pytest.approx(right.stiffness, rel=1e-11))
+    for mine, other in zip(one["links"], two["links"], strict=True):
+        assert [mine.mass, mine.centre, *mine.inertia] == pytest.approx(
+            [other.mass, other.centre, *other.inertia], rel=1e-11
+        )
+    mine = one["expected"]["coupled" if space else "bending"]["frequencies_hz"]
+    other = sorted(hz for each in two["expected"].values() for hz in each["frequencies_hz"])[:3]
+    assert mine == pytest.approx(other, rel=1e-9)
+
+
+def test_a_stepped_line_has_order_two_against_the_exact_beam(tmp_path):
+    sections = Section(length=0.4), Section(length=0.6, bending_stiffness=0.7, mass_per_length=0.2)
+    beam = Beam(length=1.0, bending_stiffness=3.0, mass_per_length=0.5, section=sections, supports=("clamped", "free"))
+    path = table(
+        tmp_path / "step.csv", x=[0.0, 0.4, 0.4, 1.0], y=0.0, EI=[3.0, 3.0, 0.7, 0.7], rho_A=[0.5, 0.5, 0.2, 0.2]
+    )
+    exact = np.array([ExactModel(beam).frequency_hz(mode) for mode in (1, 2, 3)])
+    runs = [curve_chain(path, n).data["expected"]["bending"]["frequencies_hz"] for n in (10, 20, 40)]
+    errors = [np.array(one) / exact - 1.0 for one in runs]
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.3)
+    assert 1e-4 < abs(errors[1]).max() < 6e-3
+    off = curve_chain(path, 13).data["expected"]["bending"]["frequencies_hz"] / exact - 1.0
+    assert abs(off).max() < 2e-2  # a step inside a link, by the integral of its compliance
+
+
+def as_sdf(chain, path):
+    """Frequencies by absolute poses and axes in the links, as of SDF 1.6."""
+    from scipy.spatial.transform import Rotation
+
+    from verify.engines.writers import write
+
+    write(chain, path / "rod.sdf")
+    model = ElementTree.parse(path / "rod.sdf").find("model")
+    poses = np.array([link.findtext("pose").split() for link in model.findall("link")], float)
+    turns = Rotation.from_euler("xyz", poses[:, 3:]).as_matrix()
+    joints, mass = model.findall("joint"), 0.0
+    axes = np.array(
+        [turn @ np.array(one.findtext("axis/xyz").split(), float) for turn, one in zip(turns, joints, strict=True)]
+    )
+    for i, inertial in enumerate(link.find("inertial") for link in model.findall("link")):
+        centre = poses[i, :3] + turns[i] @ [float(inertial.findtext("pose").split()[0]), 0, 0]
+        own = turns[i] @ np.diag([float(inertial.findtext(f"inertia/i{d}{d}")) for d in "xyz"]) @ turns[i].T
+        rows = np.hstack([np.cross(axes, centre - poses[:, :3]), axes]) * (np.arange(len(axes)) <= i)[:, None]
+        mass = mass + float(inertial.findtext("mass")) * rows[:, :3] @ rows[:, :3].T + rows[:, 3:] @ own @ rows[:, 3:].T
+    return hertz(mass, np.diag([float(joint.findtext("axis/dynamics/spring_stiffness")) for joint in joints]))
+
+
+ENGINES = {
+    "mujoco": as_mjcf,
+    "exudyn": by_script("exudyn"),
+    "pinocchio": by_script("pinocchio"),
+    "urdf": as_urdf,
+    "sdf": as_sdf,
+}
+
+
+@pytest.mark.parametrize("kind", ["chords", "arcs"])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_has_the_frequencies_of_the_table(engine, kind, tmp_path):
+    """Links of unequal length, twisted sections, springs at rest at zero angles of bodies with rest poses."""
+    rod = read_rod(helix(tmp_path / "helix.csv")[0])
+    chain = curved_chain(rod, rod.s[-1] * np.linspace(0, 1, 8) ** 1.3, kind)
+    assert np.ravel(ENGINES[engine](chain, tmp_path))[:6] == pytest.approx(chain.frequencies_hz(n_modes=6), rel=3e-8)
+
+
+def test_the_tip_of_the_engine_is_at_the_end_of_the_curve(tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    path = helix(tmp_path / "helix.csv")[0]
+    tips = {}
+    for kind in ("chords", "arcs"):
+        found = curve_chain(path, 12, links=kind, path=tmp_path / "rod.xml")
+        model = mujoco.MjModel.from_xml_path(str(tmp_path / "rod.xml"))
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        tips[kind] = np.linalg.norm(data.site("tip").xpos - [R * np.sin(2.4), R * (1 - np.cos(2.4)), RISE * 2.4])
+        assert found.data["end_error"] == pytest.approx(tips[kind], abs=1e-6)
+        a = 2.4 / 12 * R / SPEED  # between links: curvature times length
+        assert found.data["length_error"] == pytest.approx(-(a**2) / 24 * (kind == "chords"), rel=2e-3, abs=1e-9)
+    assert tips["chords"] < 1e-6
+    assert 1e-4 < tips["arcs"] < 5e-3
+
+
+def test_links_run_from_point_to_point_without_a_count(tmp_path):
+    path = table(
+        tmp_path / "branch.csv",
+        x=[0.0, 0.02, 0.07, 0.1],
+        y=[0.0, 0.01, 0.01, -0.02],
+        diameter=[4e-3, 3.5e-3, 3e-3, 2e-3],
+    )
+    made = tmp_path / "branch.json"
+    assert (
+        status_of(
+            [
+                "chain",
+                str(path),
+                "--set",
+                "E=2GPa",
+                "--set",
+                "rho=900",
+                "--mode",
+                "2",
+                "--error",
+                "30%",
+                "--to",
+                str(made),
+            ]
+        )
+        == 0
+    )
+    links = json.loads(made.read_text())["links"]
+    assert [one["length"] for one in links] == pytest.approx(
+        [np.hypot(0.02, 0.01), 0.05, np.hypot(0.03, 0.03)], rel=1e-9
+    )
+
+
+BAD = {
+    "EI is missing": ("x,y\n0,0\n1,0\n2,1", ()),
+    "rho_Ip is missing": ("x,y,z,EI,GJ,rho_A\n0,0,0,1,1,1\n1,0,0,1,1,1", ()),
+    "no column": ("x,y,stiffness\n0,0,1\n1,0,1", ()),
+    "no finite number": ("x,y,EI,rho_A\n0,0,1,1\n1,,1,1", ()),
+    "one place": ("x,y,EI,rho_A\n0,0,1,1\n0,0,1,1", ()),
+    "column of the table": ("x,y,EI,rho_A\n0,0,1,1\n1,0,1,1", ("EI=2",)),
+    "not positive": ("x,y,EI,rho_A\n0,0,-1,1\n1,0,1,1", ()),
+}
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_what_is_wrong_with_a_table_is_one_sentence(text, tmp_path):
+    (tmp_path / "curve.csv").write_text(BAD[text][0])
+    with pytest.raises(InputError, match=text):
+        curve_chain(tmp_path / "curve.csv", 5, overrides=BAD[text][1])

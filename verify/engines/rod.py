@@ -1,0 +1,189 @@
+"""A rod along a curve in a plane or in space: its stiffnesses, mass and section frame, from a table of points.
+
+The curve is a cubic spline through the points, by its arc length. Values are linear between points; a point that is
+given twice is a step. `u` is the direction in which bending with EI deflects, `u` x tangent that of EI2. At the start
+`u` lies in the plane of a table of x and y, else it is the normal nearest to z (x where the curve starts along z); from
+there it is transported without rotation about the tangent, and turned about it by `roll`.
+"""
+
+import csv
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.arrays import Array
+from verify.convert import in_si
+from verify.errors import InputError, near_name, raise_all, shown
+from verify.exact.torsion import shafts
+from verify.files import read_text
+from verify.problem.beam import Beam, in_plane
+from verify.problem.cross_section import SIZES
+from verify.problem.phrase import beam_table
+
+UNITS = {"x": "m", "y": "m", "z": "m", "EI": "N m^2", "EI2": "N m^2", "GJ": "N m^2", "rho_A": "kg/m", "rho_Ip": "kg m",
+         "roll": "deg", "width": "m", "thickness": "m", "diameter": "m", "wall_thickness": "m", "E": "Pa",
+         "rho": "kg/m^3", "nu": "1"}  # fmt: skip
+"""Columns and their SI units, but for the angle."""
+MATERIAL = {"E": "youngs_modulus", "rho": "density", "nu": "poissons_ratio"}
+VALUES = ("EI", "EI2", "GJ", "rho_A", "rho_Ip", "roll", "width", "thickness")
+"""Columns of `Rod.values`."""
+LARGEST = 10_000_000
+"""Bytes of a table, as of a scene with long lists."""
+GAUSS = np.polynomial.legendre.leggauss(8)
+"""Points and weights between two changes of a value: 1/EI to 1e-9 where EI changes 10 times, moments to rounding."""
+ALONG_Z = 0.99
+"""Cosine to z from which the first section is placed by x: 8 degrees."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rod:
+    """`points`, m, (P, 3), and `values` there, (P, 8), in the order of VALUES, SI, radians; in a plane or in space."""
+
+    points: Array
+    values: Array
+    in_space: bool
+    start: Array
+    """`u` at the start but for its part along the tangent, (3,)."""
+
+    @cached_property
+    def _spline(self) -> tuple[Array, Callable[..., Array]]:
+        """(arc length at the points, (P,), place by arc length)."""
+        from scipy.interpolate import CubicSpline
+
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        apart = np.append(True, steps > 1e-9 * steps.sum())
+        places, x, w = self.points[apart], *GAUSS
+        knots = np.append(0.0, np.cumsum(steps[apart[1:]]))
+        for _ in range(4):  # the spline by its own length: its speed differs from 1 by the error of the spline
+            curve, h = CubicSpline(knots, places), np.diff(knots)
+            at = knots[:-1, None] + 0.5 * h[:, None] * (1.0 + x)
+            knots = np.append(0.0, np.cumsum(0.5 * h * (np.linalg.norm(curve(at, 1), axis=2) @ w)))
+        return knots[np.cumsum(apart) - 1], CubicSpline(knots, places)
+
+    @property
+    def s(self) -> Array:
+        """Arc length at the points, m, (P,)."""
+        return self._spline[0]
+
+    @property
+    def tangent(self) -> Array:
+        """At the start, (3,)."""
+        t = self._spline[1](np.zeros(1), 1)[0]
+        return np.asarray(t / np.linalg.norm(t))
+
+    def place(self, s: Array) -> Array:
+        """Points at arc lengths, m, (n, 3)."""
+        return np.asarray(self._spline[1](s))
+
+    def at(self, s: Array) -> Array:
+        """`values` at arc lengths, (n, 8)."""
+        return np.stack([np.interp(s, self.s, one) for one in self.values.T], axis=1)
+
+    def steps(self, begin: float, end: float) -> bool:
+        """Whether EI jumps between two arc lengths, m."""
+        at = np.flatnonzero(np.diff(self.s) == 0.0)
+        jumps = (self.values[at, :2] != self.values[at + 1, :2]).any(axis=1)
+        return bool((jumps & (self.s[at] > begin) & (self.s[at] < end)).any())
+
+    def quadrature(self, cuts: Array) -> tuple[Array, Array]:
+        """Points and weights between all points of the table and `cuts`, (n,), m."""
+        edges = np.unique(np.concatenate([self.s, cuts]))
+        half = 0.5 * np.diff(edges)[:, None]
+        return (edges[:-1, None] + half * (1.0 + GAUSS[0])).ravel(), (half * GAUSS[1]).ravel()
+
+
+def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_space: bool = False) -> Rod:
+    """The rod of a table with a header: x, y and, in space, z, and the columns of UNITS, 'width [mm]' with units.
+
+    `overrides`: 'key=value' of what is one value for all. `section`: 'round 2 mm E=1GPa rho=1.2g/cm3', as of a beam.
+    `in_space`: a table of x and y as one with z = 0. Raises InputError.
+    """
+    lines = [line for line in read_text(path, "curve", LARGEST).splitlines() if line.strip() and line[0] != "#"]
+    rows = list(csv.reader(lines, delimiter=";" if ";" in (lines or [""])[0] else ","))
+    heads = [re.fullmatch(r"\s*(\w+)\s*(?:[\[(](.*)[\])])?\s*", word) for word in (rows or [[]])[0]]
+    names = [head[1] if head else "" for head in heads]
+    raise_all(
+        [f"{path.name}: {shown(one)} is no column: {near_name(one, tuple(UNITS))}" for one in names if one not in UNITS]
+    )
+    if not {"x", "y"} <= {*names} or len({*names}) < len(names) or len(rows) < 3:
+        raise InputError(f"{path.name}: give two points or more in columns x, y and, in space, z, each with one header")
+    units = [(head[1], head[2] or "") for head in heads if head]
+    scales = [in_si(f"1 {unit}", UNITS[name], name) if unit not in ("", UNITS[name]) else 1.0 for name, unit in units]
+    table = dict[str, Array]()
+    for i, (name, scale) in enumerate(zip(names, scales, strict=True)):
+        try:
+            table[name] = np.array([float(row[i]) * scale for row in rows[1:]])
+        except (ValueError, IndexError):
+            table[name] = np.array([np.nan])
+        if not np.isfinite(table[name]).all():
+            raise InputError(f"{path.name}: column {name} has a cell that is no finite number, give one in each row")
+    fixed = dict[str, float]()
+    for word in overrides:
+        name, _, text = (part.strip() for part in word.partition("="))
+        if name not in UNITS or name in table:
+            text = "is a column of the table" if name in table else near_name(name, tuple(UNITS))
+            raise InputError(f"--set {shown(word)}: {text}")
+        fixed[name] = in_si(text, UNITS[name], name)
+    own = beam_table(f"1 m x {section}, clamped-free") | {"supports": ("clamped", "free")} if section else {}
+    space = in_space or "z" in table
+    count = len(rows) - 1
+    every = [fixed | {name: float(column[i]) for name, column in table.items()} for i in range(count)]
+    values = np.array([_values(tuple(sorted(row.items())), tuple(own.items()), space, path.name) for row in every])
+    points = np.stack([table.get(name, np.zeros(count)) for name in "xyz"], axis=1)
+    first = points[np.linalg.norm(points - points[0], axis=1) > 0.0][:1] - points[0]
+    if not len(first):
+        raise InputError(f"{path.name}: its points are one place, give a curve")
+    tangent = first[0] / np.linalg.norm(first[0])
+    start = np.array([-tangent[1], tangent[0], 0.0]) if "z" not in table else np.eye(3)[2]
+    return Rod(points, values, space, np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start)
+
+
+@lru_cache(maxsize=4096)
+def _values(
+    row: tuple[tuple[str, float], ...], section: tuple[tuple[str, Any], ...], space: bool, name: str
+) -> list[float]:
+    """VALUES of a point by its columns: directly, or from sizes and material. Raises InputError."""
+    given = dict(row)
+    sizes = {size for group in SIZES.values() for size in group}
+    fields = dict(section) | {MATERIAL.get(key, key): value for key, value in row if key in sizes or key in MATERIAL}
+    if {"diameter", "wall_thickness"} & set(fields):
+        fields["shape"] = "tube" if "wall_thickness" in fields else "round"
+    made = dict[str, float]()
+    if fields and not {"EI", "rho_A"} <= set(given):
+        beam = Beam(**{"length": 1.0} | fields)
+        made = {"EI": beam.bending_stiffness, "rho_A": beam.mass_per_length}
+        if space:
+            _, made["GJ"], made["rho_Ip"] = shafts(beam)[0].tolist()
+            made["EI2"] = in_plane(beam, "width").bending_stiffness
+    made |= {key: fields[key] for key in ("width", "thickness", "diameter") if key in fields} | given
+    made.setdefault("EI2", made.get("EI", 0.0))
+    for key in VALUES[:5] if space else ("EI", "rho_A"):
+        if not made.get(key, 0.0) > 0.0:
+            remedy = "polar inertia per length, kg m, " if key == "rho_Ip" else ""
+            text = f"{key} is missing or not positive, give {remedy}as a column or by --set {key}=..., or a section"
+            raise InputError(f"{name}: {text}")
+    thick = made.get("diameter", 0.0)
+    drawn = made.get("width", thick), made.get("thickness", thick)
+    return [*(made.get(key, 1.0) for key in VALUES[:5]), np.radians(made.get("roll", 0.0)), *drawn]
+
+
+def transported(tangents: Array, start: Array, roll: Array) -> Array:
+    """Frames (tangent, `u` x tangent, `u`), (n, 3, 3): the least rotation from tangent to tangent, then `roll`."""
+    u, frames = start - (start @ tangents[0]) * tangents[0], list[Array]()
+    for i, t in enumerate(tangents):
+        if i:
+            before = tangents[i - 1]
+            w = np.cross(before, t)
+            u = u + np.cross(w, u) + np.cross(w, np.cross(w, u)) / (1.0 + before @ t)
+        u = u - (u @ t) * t
+        u = u / np.linalg.norm(u)
+        c, s = np.cos(roll[i]), sin(roll[i])
+        turned = c * u + s * np.cross(t, u)
+        frames.append(np.stack([t, np.cross(turned, t), turned], axis=1))
+    return np.array(frames)
