@@ -15,6 +15,7 @@ from verify.cases.table import CASES
         ("restitution", 500, 1.0),
         ("pendulum", 20, 2.0),
         ("heavy-column", 4, 4.0),
+        ("spin-up-tensioned", 8, 4.0),
     ],
 )
 def test_error_falls_with_the_order_of_the_model(name, first, order):

@@ -162,6 +162,13 @@ def test_a_rotating_beam_stretches_as_by_the_closed_form_however_short_its_eleme
     assert abs(errors[2]) < 1e-8  # rounding; without a share of EA it is 2e-3
 
 
+def test_sections_without_an_area_have_the_given_axial_stiffness():
+    sections = [{"length": 0.5, "bending_stiffness": 0.7}, {"length": 0.8, "bending_stiffness": 0.4}]
+    beam = msgspec.convert(msgspec.to_builtins(CANTILEVER) | {"section": sections}, Beam)
+    bent = NonlinearHermite(beam, 13, axial_stiffness=3e3).bend((2.0, 1e-4))
+    assert bent.tip[0] - L == pytest.approx(2.0 * L / 3e3, rel=1e-6)
+
+
 def test_under_a_moment_its_frequencies_are_those_of_the_chain_and_a_follower_force_is_refused():
     chain = replace(build_system(CANTILEVER, 40), loads=(LinkLoad(link=40, at=L / 40, moment=0.3),))
     angles = np.diff(bend(CANTILEVER, 40, moment=0.3).angles, prepend=0.0)

@@ -130,7 +130,8 @@ class PlaneElements:
     def _axial(self) -> Array:
         """EA of the elements, (n,), N."""
         if self.axial_stiffness is not None:
-            return self.axial_stiffness * self.parts.axial_stiffnesses
+            shares = self.parts.axial_stiffnesses
+            return self.axial_stiffness * np.where(np.isnan(shares), 1.0, shares)  # unknown areas: EA of all
         return np.array([piece.axial_stiffness for piece in self.parts.pieces]).repeat(self.parts.shares)
 
     @cached_property
