@@ -24,8 +24,8 @@ LARGEST_TURN = 0.5  # largest change of a slope in one Newton step: tangents are
 class NonlinearHermite(PlaneElements):
     """A beam of `count` nonlinear Hermite elements; `axial_stiffness` EA, N, is by default that of its section.
 
-    Supports are those of the beam; the left of two supported ends does not slide along the beam. Raises InputError for
-    attachments, a loss factor, axial force, and an unknown EA.
+    Supports are those of the beam; the left of two supported ends does not slide along the beam, and with `immovable`
+    nor does the right one. Raises InputError for attachments, a loss factor, axial force, and an unknown EA.
     """
 
     def bend(

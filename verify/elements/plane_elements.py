@@ -65,6 +65,8 @@ class PlaneElements:
     beam: Beam
     count: int
     axial_stiffness: float | None = None
+    immovable: bool = False
+    """Whether the right end keeps the x of the `start` of an equilibrium or a motion."""
     free: Array = field(init=False)
     """(count + 1, 2, 2): 1 where a coordinate or slope of a node may move, else 0."""
 
@@ -82,6 +84,7 @@ class PlaneElements:
             if not free[node, 0, 1]:
                 free[node, 0, 0] = 0.0
                 break
+        free[-1, 0, 0] *= not self.immovable
         object.__setattr__(self, "free", free)
 
     # --- Constant arrays -------------------------------------------------------------------------------------------
