@@ -2,11 +2,12 @@
 
     python -m benchmarks.large_motion
 
-Static cases: error of the figure. Motions: largest distance of the tip's path from the model's own converged one, over
-the largest lag of the spin-up or the pendulum's length; numbers and tolerances are tried in turn, and the row is the
-fastest that keeps the error. Links: explicit steps of Dormand and Prince's method with a tolerance, or of RK4 at 0.95
-of its stability limit; elements: generalised-alpha, implicit. Where they are installed, MuJoCo's chain of the same
-links (RK4; at rest under damping for the elastica) and Exudyn's ANCF cables, with steps, s, in place of tolerances.
+Static cases: error of the figure, by the least number. Motions: largest distance of the tip's path from the model's own
+converged one, over the largest lag of the spin-up or the pendulum's length; numbers and tolerances are tried in turn,
+and the row is the fastest that keeps the error. Links: explicit steps of Dormand and Prince's method with a tolerance,
+or of RK4 at 0.95 of its stability limit; elements: generalised-alpha, implicit. Where they are installed, MuJoCo's
+chain of the same links (RK4; at rest under damping for the elastica) and Exudyn's ANCF cables, with steps, s, in place
+of tolerances.
 """
 
 from collections.abc import Callable, Iterator
@@ -125,15 +126,16 @@ def timed(attempt: Try) -> tuple[float, Any]:
     return process_time() - began, result
 
 
-def row(name: str, tries: list[tuple[str, Try]], error: Callable[[Any], float]) -> None:
-    """Print the fastest try within each limit."""
+def row(name: str, tries: list[tuple[str, Try]], error: Callable[[Any], float], *, fewest: bool = False) -> None:
+    """Print the fastest try within each limit, or that of the fewest parts."""
     measured = []
     for what, attempt in tries:
         time, result = timed(attempt)
         measured.append((time, what, error(result)))
     cells = []
     for limit in LIMITS:
-        good = min((one for one in measured if abs(one[2]) <= limit), default=None)
+        within = [one for one in measured if abs(one[2]) <= limit]
+        good = within[0] if fewest and within else min(within, default=None)
         cells.append(f"{good[1]}: {1e3 * good[0]:.3g} ms" if good else "not reached")
     print(f"| {name} | {' | '.join(cells)} |", flush=True)
 
@@ -170,13 +172,13 @@ def main() -> None:
         for models, case, sizes in (
             ("links", "rotating-cantilever", links),
             ("links, tensioned", "rotating-cantilever-tensioned", links[3:]),  # fewer have a joint without stiffness
-            ("elements", "rotating-cantilever-elements", elements),
+            ("elements", "rotating-cantilever-elements", elements[1:]),
         ):
             fitting = [n for n in sizes if n > mode]
             statics.append((f"rotating, mode {mode}: {models}", CASES[f"{case}-{mode}"].error, fitting, True))
     for name, error, sizes, installed in statics:
         if installed:
-            row(name, [(str(n), partial(error, n)) for n in sizes], float)
+            row(name, [(str(n), partial(error, n)) for n in sizes], float, fewest=True)
 
     soft = partial(spun_links, joints=tensioned)
     spun, stretched = extrapolated(soft, 32, 64, 1e-9, 4), extrapolated(spun_elements, 12, 16, 1e-9, 4)
