@@ -57,6 +57,34 @@ def test_the_straight_beam_has_the_frequencies_of_the_linear_elements(supports):
     assert model.bend().frequencies_hz(flapping=True)[:5] == pytest.approx(linear, rel=1e-9)
 
 
+def test_the_tangent_of_the_straight_beam_is_the_linear_elements_matrix():
+    size = L / 3
+    bend = np.array(
+        [
+            [12.0, 6.0 * size, -12.0, 6.0 * size],
+            [6.0 * size, 4.0 * size**2, -6.0 * size, 2.0 * size**2],
+            [-12.0, -6.0 * size, 12.0, -6.0 * size],
+            [6.0 * size, 2.0 * size**2, -6.0 * size, 4.0 * size**2],
+        ]
+    )
+    model = elements(3, axial=10.0)  # the rounding of the stretch times EA L^2/EI is below 1e-13
+    tangent = model.elastic(model.straight)[1][1]
+    assert tangent[1::2, 1::2] == pytest.approx(EI / size**3 * bend, rel=1e-13, abs=1e-13 * abs(bend).max())
+    assert abs(tangent[::2, 1::2]).max() == 0.0
+
+
+def test_forces_and_tangent_are_derivatives_of_the_energy_of_a_bent_and_stretched_beam():
+    model, rng = elements(3, axial=40.0), np.random.default_rng(62)
+    state = model.straight + rng.normal(0.0, 0.1, model.straight.shape)
+    move, other = rng.normal(0.0, 1.0, (2, *state.shape))
+    near = np.array([-1e-5, 1e-5])[:, None, None, None]
+    energies, (gradient, hessian) = model.energy(state + near * move), model.elastic(state)
+    assert (gradient * model.of_elements(move)).sum() == pytest.approx((energies[1] - energies[0]) / 2e-5, rel=1e-6)
+    forces = [(model.elastic(state + one * move)[0] * model.of_elements(other)).sum() for one in (-1e-5, 1e-5)]
+    twice = np.einsum("ni,nij,nj", model.of_elements(other), hessian, model.of_elements(move))
+    assert twice == pytest.approx((forces[1] - forces[0]) / 2e-5, rel=1e-6)
+
+
 @pytest.mark.parametrize(("load", "deflection", "shortening", "turn"), ELASTICA)
 def test_a_dead_load_bends_it_to_the_elastica(load, deflection, shortening, turn):
     bent = elements(24).bend(load * EI / L**2)
