@@ -1,8 +1,13 @@
 """Models on problems of known answer that no gate of a scene judges: orders of the errors, a moving force, energy."""
 
+from math import pi, radians, sin, tan
+
 import numpy as np
 import pytest
 from reference.curved_rods import frequencies, helix
+from reference.multibody import elastica_tip
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
 from verify.analysis.comparison import observed_order
 from verify.cases.energy import imbalance
@@ -27,6 +32,11 @@ from verify.cases.table import CASES
         ("ring-balanced-2", 37, 4.0),
         ("ring-chords-2", 17, 2.0),
         ("ring-chords-across-2", 17, 2.0),
+        ("spin-up-tensioned", 8, 4.0),
+        ("sagging-cable-1", 10, 2.0),
+        ("sagging-cable-100", 10, 2.0),
+        ("buckled-40-shortening", 20, 2.0),
+        ("roll-up-elements", 8, 2.1),  # the restraint of the slopes gives way; above 32 elements more
     ],
 )
 def test_error_falls_with_the_order_of_the_model(name, first, order):
@@ -73,6 +83,44 @@ def test_the_princeton_beam_bends_in_space_as_ansys_beams_of_their_torsion(degre
     found = [1e3 * deflection_in_space(degrees, component, 1.034) for component in (1, 2)]
     assert found == [pytest.approx(deep * (1 - 4.3e-4), rel=1.2e-4), pytest.approx(thin, rel=5e-5)]
     assert 5e-4 < 1e3 * deflection_in_space(degrees, 1) / deep - 1 < 8e-3
+
+
+@pytest.mark.parametrize("load", [0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 10.0])
+def test_four_elements_bend_to_the_elastica_as_well_as_twenty_links_or_better(load):
+    exact = elastica_tip(load)[0]
+    links = [CASES["elastica-deflection"].run(load, "deflection", count) / exact - 1.0 for count in (10, 20, 40)]
+    elements = [CASES["elastica-elements"].run(load, count) / exact - 1.0 for count in (4, 8, 16)]
+    assert observed_order([10, 20, 40], links) == pytest.approx(2.05, abs=0.05)
+    assert observed_order([4, 8, 16], elements) == pytest.approx(3.5, abs=0.35)
+    assert 0.03 * abs(links[1]) < abs(elements[0]) < 1.3 * abs(links[1])
+
+
+@pytest.mark.parametrize("angle", [20, 40, 60, 80, 100, 120])
+def test_columns_buckle_to_the_elastica_of_their_end_angle(angle):
+    p = sin(radians(angle) / 2.0)
+    first, second = ellipk(p * p), ellipe(p * p)
+    beyond, euler = (2.0 * first / pi) ** 2 - 1.0, (pi / 40.0) ** 2 / 12.0  # the chain's load is lower by (pi/N)^2/12
+    exact = {"deflection": (p / first, 0.5), "shortening": (2.0 - 2.0 * second / first, 1.0)}
+    for component, (value, power) in exact.items():
+        links, elements = (CASES[f"{name}-{angle}-{component}"] for name in ("buckled", "buckled-elements"))
+        assert links.exact == elements.exact == pytest.approx(value, rel=3e-8)
+        assert links.error(40) / links.error(80) == pytest.approx(4.0, rel=0.05)
+        assert links.error(40) * beyond == pytest.approx(power * euler, rel=0.05 + beyond)
+        assert elements.error(16) == pytest.approx(0.0, abs=5e-5 + 4e-6 / beyond)
+
+
+@pytest.mark.parametrize(("name", "square"), [("1", 1.0), ("10", 10.0), ("crossover", 4.0 * pi**2), ("100", 100.0)])
+def test_a_sagging_cable_has_irvines_symmetric_frequency(name, square):
+    exact = brentq(lambda w: tan(w / 2.0) - w / 2.0 + 4.0 / square * (w / 2.0) ** 3, 1.001 * pi, 2.999 * pi) / pi
+    links, elements = CASES[f"sagging-cable-{name}"], CASES[f"sagging-cable-elements-{name}"]
+    assert links.exact == pytest.approx(exact, rel=1e-9)
+    assert links.error(40) / links.error(80) == pytest.approx(4.0, rel=0.1)
+    assert 2e-5 < links.error(80) < 5e-4
+    assert elements.error() == pytest.approx(0.0, abs=5e-5)
+
+
+def test_hanging_elements_have_the_frequency_of_a_chain():
+    assert CASES["hanging-chain-elements"].error() == pytest.approx(7e-6, abs=4e-6)
 
 
 def test_segments_under_a_moving_force_deflect_as_by_frybas_series():

@@ -64,6 +64,15 @@ def test_a_slow_turn_bends_it_as_its_inertia_bends_a_cantilever_at_rest(model):
     assert measured(bent, "root_moment", model=model) == pytest.approx(moment, rel=0.02)
 
 
+def test_joints_that_follow_the_axial_force_bring_links_nearer_to_elements():
+    off = []
+    for joints in ("series", "tensioned"):
+        spun = scene("rotation = [0.0, 2.0]", "gravity = [0.0, -0.4]", "[large-motion]", f'joints = "{joints}"')
+        off.append(run_scene(spun).results["large-motion"].tables[0].records()[0]["path off"])
+    assert off[1] < 0.3 * off[0]
+    assert off[0] > 1e-3
+
+
 @pytest.mark.parametrize(("model", "within"), [("segment", 1e-7), ("fem", 1e-6)])
 def test_in_steady_rotation_it_stays_straight(model, within):
     turns = scene("rotation = [0.3, 1.7]", "hub_radius = 0.2")

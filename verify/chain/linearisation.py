@@ -85,23 +85,26 @@ def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
 
 
 def tensioned(system: ChainSystem, wall: Wall = DEFAULT.wall) -> ChainSystem:
-    """The chain with joints that are softer by T l/12, T the axial force of steady rotation and gravity along it.
+    """The chain with joints that are softer by T l/12, T the axial force of rotation, translation and gravity along it.
 
     A link of length l turns as a whole where the beam under tension T bends, which changes frequencies by (k l)^2/12 of
     T's part. Joints EI/l - T l/12 take it off, with the weights of `wall` beside a clamp as under the constant T of a
-    linear chain (`segments.walls`): order 4 where T varies, too. For vibrations alone, since buckling loads err to the
-    other side. Raises InputError where no axial force acts or a joint keeps no stiffness.
+    linear chain (`segments.walls`): order 4 of a uniform beam where T varies, too, along it or in time. T is that of
+    the straight chain, in steady rotation or, on a base that moves, at the time of the step. For vibrations alone,
+    since buckling loads err to the other side. Raises InputError where no axial force acts or a joint keeps no
+    stiffness; `simulate` raises it for a moving base under dead forces and for a chain that bends far.
     """
-    middles = 0.5 * (system.nodes[1:] + system.nodes[:-1])
-    pull = system.masses * ((system.base.hub_radius + middles) * system.hub_rate**2 + system.gravity[0])
-    if not pull.any():
-        raise InputError("chain.hub_rate = 0.0 and no gravity along the chain: no axial force softens a joint")
-    tension = np.cumsum(pull[::-1])[::-1]
     lengths = np.append(system.lengths[:1], 0.5 * (system.lengths[1:] + system.lengths[:-1]))
     factors = wall_factors(("clamped", "free"), system.n_links, wall)[:-1]
     weights = 1.0 / factors
     weights[0] += tension_excess(wall) / factors[0] ** 2
-    stiffness = system.stiffness - np.where(system.stiffness > 0.0, tension * lengths / 12.0 * weights, 0.0)
+    softening = np.where(system.stiffness > 0.0, lengths / 12.0 * weights, 0.0)
+    if system.base.moves:
+        return replace(system, softening=softening)
+    tension = system.tension(0.0)
+    if not tension.any():
+        raise InputError("chain.hub_rate = 0.0 and no gravity along the chain: no axial force softens a joint")
+    stiffness = system.stiffness - tension * softening
     if (stiffness[system.stiffness > 0.0] <= 0.0).any():
         raise InputError(f"count = {system.n_links}: the axial force leaves no stiffness in a joint, give more links")
     return replace(system, stiffness=stiffness)

@@ -15,20 +15,23 @@ from verify.arrays import Array
 from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION, Model
 from verify.chain.system import ChainState, ChainSystem, circular
+from verify.errors import InputError
 from verify.jit import FAST, inline, jit
 from verify.problem.base_motion import FIXED
 
-HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y = range(9)
-"""Columns of `links`, (N, 9): half length, mass for x and y, inertia J + h^2 m_y about an end, (m_x - m_y)/4, joint,
-weight."""
+HALF, MASS_X, MASS_Y, INERTIA, SKEW, SPRING, DASHPOT, WEIGHT_X, WEIGHT_Y, BY_SPIN, BY_PULL = range(11)
+"""Columns of `links`, (N, 11): half length, mass for x and y, inertia J + h^2 m_y about an end, (m_x - m_y)/4, joint,
+weight, stiffness that a joint loses per square of the hub's rate and per acceleration along the straight chain."""
 ARM, FX, FY, MOMENT, OMEGA, PHASE, LINK = range(7)
 """Columns of `loads`, (n_loads, 7): link 0..N-1, arm from its middle, load, which is times cos(omega t + phase)."""
-PIECE, ROLLER, TIP_SPRING, PIVOT, LENGTH, HUB_RADIUS = range(6)
-"""Entries of `numbers`: duration of a piece of `base`, roller, its axial spring, dependent joint, length, radius."""
+PIECE, ROLLER, TIP_SPRING, PIVOT, LENGTH, HUB_RADIUS, FOLLOWS, GRAVITY_X, GRAVITY_Y = range(9)
+"""Entries of `numbers`: duration of a piece of `base`, roller, its axial spring, dependent joint, length, radius,
+whether joints follow the axial force, gravity."""
 COS, SIN, TORQUE, FORCE_X, FORCE_Y, VX, VY, GAIN_X, GAIN_Y, MOBILITY, UNIT = range(11)
 """Columns of `scratch`, (N + 1, 11); `UNIT` ends as accelerations per force of the roller, the last the tip's."""
 TINY = 1e-250
 """Forces below this are zero: they fall by 0.27 a link, and subnormal numbers take a hundred times as long."""
+CHECKED = 129  # instants of a run at which joints that follow the axial force keep a stiffness
 SHORT_ARM = 0.1  # lever arm of the dependent joint over the chain's length below which another joint becomes dependent
 Tip = tuple[float, float, float, float, float, float]
 
@@ -141,7 +144,10 @@ def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
     turn, change, cos_turn, sin_turn = close(directions(theta, omega, links, pivot, w), links, numbers, w)
     angle, rate, hub_x, hub_y = move_hub(t, numbers, base)
     lost, vx, vy, ax, ay, moment, pull = 0.0, 0.0, 0.0, hub_x, hub_y, 0.0, 0.0
-    power = -rate * (links[0, SPRING] * (theta[0] - angle) + links[0, DASHPOT] * (omega[0] - rate))
+    square, outward, hub_rate, power = 0.0, 0.0, rate, 0.0
+    if numbers[FOLLOWS] > 0.0:
+        square, c, s = rate * rate, np.cos(angle), np.sin(angle)
+        outward = (numbers[GRAVITY_X] - hub_x) * c + (numbers[GRAVITY_Y] - hub_y) * s
     for i in range(n):
         c, s = w[i, COS], w[i, SIN]
         if i >= pivot:
@@ -149,8 +155,10 @@ def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
             w[i, COS], w[i, SIN] = c, s
             theta[i] += turn
             omega[i] += change
-        turning = omega[i] - rate
-        after = -links[i, SPRING] * (theta[i] - angle) - links[i, DASHPOT] * turning
+        turning, bend = omega[i] - rate, theta[i] - angle
+        softer = (square * links[i, BY_SPIN] + outward * links[i, BY_PULL]) * bend
+        after = softer - links[i, SPRING] * bend - links[i, DASHPOT] * turning
+        power += softer * turning + (hub_rate * after if i == 0 else 0.0)
         lost += links[i, DASHPOT] * turning * turning
         w[i - 1, TORQUE] = moment - after  # of i = 0 into the last row, which is set below
         angle, rate, moment = theta[i], omega[i], after
@@ -186,7 +194,14 @@ def flatten(system: ChainSystem, end: float = 0.0) -> Model:
     weights = [component * masses for component in system.gravity]
     along = masses * system.axial_inertia
     inertia = [system.inertias + half**2 * masses, 0.25 * (along - masses)]
-    own = [half, along, masses, *inertia, system.stiffness, system.dashpots, *weights]
+    losses = [np.zeros(n)] * 2
+    if follows := len(system.softening) > 0:
+        moments = masses * (system.nodes[:-1] + half), masses
+        losses = [system.softening * np.cumsum(moment[::-1])[::-1] for moment in moments]
+        softest = system.stiffness - system.softening * system.tension(np.linspace(0.0, end, CHECKED))
+        if (softest[:, system.stiffness > 0.0] <= 0.0).any():
+            raise InputError(f"count = {n}: the axial force leaves no stiffness in a joint, give more links")
+    own = [half, along, masses, *inertia, system.stiffness, system.dashpots, *weights, *losses]
     loads = [
         (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
@@ -198,7 +213,7 @@ def flatten(system: ChainSystem, end: float = 0.0) -> Model:
         base = system.base.table(end)
         piece = end / len(base)
     radius = system.base.hub_radius
-    numbers = (piece, system.tip == "roller", system.axial_spring, 0.0, system.length, radius)
+    numbers = (piece, system.tip == "roller", system.axial_spring, 0.0, system.length, radius, follows, *system.gravity)
     return Model(
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
         np.array(loads, dtype=float).reshape(len(loads), 7),

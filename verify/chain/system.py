@@ -43,6 +43,8 @@ class ChainSystem:
     inertias: Array  # (N,), kg m^2, about the middles
     stiffness: Array  # (N,), N m/rad; the first at the hub; 0 for a pin
     dashpots: Array  # (N,), N m s/rad
+    softening: Array = field(default_factory=lambda: np.zeros(0))
+    """(N,), m: stiffness that joints lose per `tension` on a moving base (`linearisation.tensioned`); (0,): none."""
     tip: Tip = "free"
     axial_spring: float = 0.0  # spring against axial motion of the roller, N/m; EA/L models an immovable end
     axial_stiffness: Array = field(default_factory=lambda: np.zeros(0))
@@ -62,10 +64,20 @@ class ChainSystem:
     def hub(self, times: float | Array) -> tuple[Array, Array]:
         """Angle, rad, and rate, rad/s, of the hub at times (...)."""
         at = np.asarray(times, dtype=float)
-        if self.base is FIXED:
+        if not self.base.moves:
             return self.hub_rate * at, np.full_like(at, self.hub_rate)
         angle, rate, _ = np.array([self.base.rotation(t) for t in at.ravel().tolist()]).reshape(-1, 3).T
         return angle.reshape(at.shape), rate.reshape(at.shape)
+
+    def tension(self, times: float | Array) -> Array:
+        """Axial forces in the joints of the straight chain that follows its hub at times (...), (..., N), N."""
+        angle, rate = (one[..., None] for one in self.hub(times))
+        at = np.asarray(times, dtype=float).ravel().tolist()
+        moving = np.array([(self.base.x(t)[2], self.base.y(t)[2]) for t in at]).reshape(*angle.shape[:-1], 2)
+        along = ((self.gravity - moving) * np.concatenate([np.cos(angle), np.sin(angle)], axis=-1)).sum(-1)
+        radius = self.base.hub_radius + 0.5 * (self.nodes[1:] + self.nodes[:-1])
+        pull = self.masses * (radius * rate**2 + along[..., None])
+        return np.asarray(np.cumsum(pull[..., ::-1], axis=-1)[..., ::-1])
 
     @property
     def rigid(self) -> bool:

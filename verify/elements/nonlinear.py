@@ -25,8 +25,9 @@ class NonlinearHermite(PlaneElements):
     """A beam of `count` nonlinear Hermite elements; `axial_stiffness` EA, N, is by default that of its section.
 
     `curvature` of the unloaded beam, 1/m, is a function of arrays of arc length, m; such a beam is a cantilever that
-    starts along x. Supports are those of the beam; the left of two supported ends does not slide along the beam. Raises
-    InputError for attachments, a loss factor, axial force, an unknown EA, and curved beams on other supports.
+    starts along x. Supports are those of the beam; the left of two supported ends does not slide along the beam, and
+    with `immovable` nor does the right one. Raises InputError for attachments, a loss factor, axial force, an unknown
+    EA, and curved beams on other supports.
     """
 
     def bend(

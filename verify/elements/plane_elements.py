@@ -22,7 +22,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solve_banded
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgbsv
 
 from verify.arrays import Array, Indices
 from verify.errors import InputError
@@ -36,7 +37,6 @@ FINE = 16  # parts of an element for splines of the shape at rest: their error, 
 RESTRAINT = 0.1  # part of EA at four points, in EI/l^2: its error is far below that of bending
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 """Rotation by 90 degrees."""
-UNIT = np.eye(2)
 
 
 class Forces(NamedTuple):
@@ -69,6 +69,8 @@ class PlaneElements:
     axial_stiffness: float | None = None
     curvature: Callable[[Array], Array] | None = None
     """Curvature at rest, 1/m, of arc lengths, m, of a cantilever that starts along x: arrays of equal shape."""
+    immovable: bool = False
+    """Whether the right end keeps the x of the `start` of an equilibrium or a motion."""
     free: Array = field(init=False)
     """(count + 1, 2, 2): 1 where a coordinate or slope of a node may move, else 0."""
 
@@ -90,6 +92,7 @@ class PlaneElements:
             if not free[node, 0, 1]:
                 free[node, 0, 0] = 0.0
                 break
+        free[-1, 0, 0] *= not self.immovable
         object.__setattr__(self, "free", free)
 
     # --- Constant arrays -------------------------------------------------------------------------------------------
@@ -126,14 +129,14 @@ class PlaneElements:
 
     @cached_property
     def _at_rest(self) -> tuple[Array, Array]:
-        """Stretch and curvature of the unloaded elements at six points, (n, 6) each, or those of a straight beam."""
+        """Stretch and curvature of the unloaded elements at six points, (n, 6) each: 1 and 0 of a straight beam."""
         if self.curvature is None:
-            return np.ones((1, 1)), np.zeros((1, 1))
+            return np.ones_like(self._shapes[1]), np.zeros_like(self._shapes[1])
         return self._strains(self.rest)
 
     @cached_property
     def _shapes(self) -> tuple[Array, Array, Array]:
-        """Rows of r' and r'' at six points by the values of an element, (n, 6, 4, 8); EA ds and EI ds, (n, 6)."""
+        """Rows of r' and r'' at six points by the values of one coordinate, (n, 6, 2, 4); EA ds and EI ds, (n, 6)."""
         from skfem.assembly import CellBasis
 
         from verify.elements.element import line_basis
@@ -144,10 +147,7 @@ class PlaneElements:
         restraint = np.minimum(RESTRAINT * ei / np.diff(self.nodes) ** 2, ea)
         for basis in (full, CellBasis(full.mesh, full.elem, intorder=3)):
             slopes, bends = (np.stack([w[k].grad[0] for w in basis.basis[:4]], axis=-1) for k in (0, 1))
-            table = np.zeros((*slopes.shape[:2], 4, 4, 2))
-            for axis in (0, 1):
-                table[:, :, axis, :, axis], table[:, :, 2 + axis, :, axis] = slopes, bends
-            rows.append(table.reshape(*slopes.shape[:2], 4, 8))
+            rows.append(np.stack([slopes, bends], axis=2))
             two = basis is not full
             stretch = ea - restraint if two else restraint
             axial.append(stretch[:, None] * basis.dx)
@@ -158,7 +158,8 @@ class PlaneElements:
     def _axial(self) -> Array:
         """EA of the elements, (n,), N."""
         if self.axial_stiffness is not None:
-            return self.axial_stiffness * self.parts.axial_stiffnesses
+            shares = self.parts.axial_stiffnesses
+            return self.axial_stiffness * np.where(np.isnan(shares), 1.0, shares)  # unknown areas: EA of all
         return np.array([piece.axial_stiffness for piece in self.parts.pieces]).repeat(self.parts.shares)
 
     @cached_property
@@ -202,9 +203,12 @@ class PlaneElements:
     def solve(self, bands: Array, right: Array) -> Array:
         """Solution (count + 1, 2, 2) of a banded system; supported values do not change. Raises LinAlgError."""
         free = self.free.reshape(-1)
-        bands = bands.copy()
-        bands[BAND] += 1.0 - free
-        solution = solve_banded((BAND, BAND), bands, right * free, overwrite_ab=True, check_finite=False)
+        factors = np.zeros((3 * BAND + 1, free.size), order="F")  # of LAPACK, without the checks of `solve_banded`
+        factors[BAND:] = bands
+        factors[2 * BAND] += 1.0 - free
+        *_, solution, fault = dgbsv(BAND, BAND, factors, right * free, overwrite_ab=True, overwrite_b=True)
+        if fault:
+            raise LinAlgError("singular matrix")
         return np.asarray(solution).reshape(self.free.shape)
 
     @property
@@ -226,48 +230,19 @@ class PlaneElements:
 
     def _strains(self, states: Array) -> tuple[Array, Array]:
         """Stretch and curvature at the points of states (..., count + 1, 2, 2), (..., n, 6) each."""
-        values = states.reshape(*states.shape[:-3], -1)[..., self._places[0]]
-        a, b = np.split(np.einsum("nqij,...nj->...nqi", self._shapes[0], values), 2, axis=-1)
+        values = states.reshape(*states.shape[:-3], -1)[..., self._places[0].reshape(-1, 4, 2)]
+        a, b = np.moveaxis(np.einsum("nqdk,...nkc->...nqdc", self._shapes[0], values), -2, 0)
         stretch2 = (a * a).sum(-1)
         return np.sqrt(stretch2), (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / stretch2
 
     def elastic(self, state: Array) -> tuple[Array, Array]:
-        """Derivatives of the energy by the values of each element: first (n, 8), second (n, 8, 8).
+        """Derivatives of the energy by the values of each element: first (n, 8), second (n, 8, 8)."""
+        from verify.elements.strain_kernels import differentiate
 
-        With a = r', b = r'', p = -b turned by 90 degrees: kappa = a x b / J^2 has the derivatives p/J^2 - 2 kappa a/J^2
-        by a and (a turned by 90 degrees)/J^2 by b.
-        """
-        (rows, axial, bending), (length, bent) = self._shapes, self._at_rest
-        both = (rows.reshape(self.count, -1, 8) @ self.of_elements(state)[..., None]).reshape(*axial.shape, 4)
-        a, b = both[..., :2], both[..., 2:]
-        stretch2 = (a * a).sum(-1)[..., None]
-        stretch = np.sqrt(stretch2)
-        tangent, turned, p = a / stretch, a @ QUARTER.T, -b @ QUARTER.T
-        kappa = (turned * b).sum(-1)[..., None] / stretch2
-        by_a, by_b = (p - 2.0 * kappa * a) / stretch2, turned / stretch2
-        strain = stretch - length[..., None]
-        ea, ei = axial[..., None], bending[..., None]
-        moment = ei * (kappa - bent[..., None])
-        gradient = np.concatenate([ea * strain * tangent + moment * by_a, moment * by_b], axis=-1)
-
-        square, mixed = outer(tangent, tangent), outer(p, a)
-        ea, ei, moment, stretch, stretch2, kappa, strain = (
-            array[..., None] for array in (ea, ei, moment, stretch, stretch2, kappa, strain)
-        )
-        second = (8.0 * kappa * square - 2.0 * kappa * UNIT) / stretch2
-        second -= 2.0 * (mixed + mixed.swapaxes(-1, -2)) / stretch2**2
-        hessian = np.empty((*axial.shape, 4, 4))
-        hessian[..., :2, :2] = ea * (square + strain / stretch * (UNIT - square)) + (
-            ei * outer(by_a, by_a) + moment * second
-        )
-        mixed = -QUARTER / stretch2 - 2.0 * outer(a, turned) / stretch2**2
-        hessian[..., :2, 2:] = ei * outer(by_a, by_b) + moment * mixed
-        hessian[..., 2:, :2] = hessian[..., :2, 2:].swapaxes(-1, -2)
-        hessian[..., 2:, 2:] = ei * outer(by_b, by_b)
-        n = self.count
-        flat = rows.reshape(n, -1, 8)
-        curved = (hessian @ rows).reshape(n, -1, 8)
-        return (gradient.reshape(n, 1, -1) @ flat)[:, 0], flat.swapaxes(1, 2) @ curved
+        (rows, axial, bending), at_rest = self._shapes, self._at_rest
+        gradient, hessian = np.zeros((self.count, 8)), np.zeros((self.count, 8, 8))
+        differentiate(self.of_elements(state), rows, axial, bending, at_rest, np.zeros((5, 4)), gradient, hessian)
+        return gradient, hessian
 
     # --- Loads -----------------------------------------------------------------------------------------------------
 
@@ -288,8 +263,3 @@ class PlaneElements:
         matrices[-1, 4:6, 6:] = along * turning + across * QUARTER @ turning
         matrices[-1, 6:, 6:] = forces.moment * (QUARTER / square - 2.0 * np.outer(turned, a) / square**2)
         return vectors, matrices
-
-
-def outer(a: Array, b: Array) -> Array:
-    """Products a_i b_j of vectors (..., k)."""
-    return a[..., :, None] * b[..., None, :]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from verify.arrays import Array
 from verify.convert import convert
 from verify.errors import InputError, shown
 from verify.validation import check_number
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Prescribed: TypeAlias = Callable[[float], tuple[float, float, float]]
 """Value, first and second derivative at a time, s."""
@@ -94,18 +97,32 @@ class Base:
 
         Powers 0 to 5 of the angle, 0 to 3 of the axis's accelerations along x and y, of the time since the piece began.
         """
-        from scipy.interpolate import BPoly, CubicSpline, PPoly
+        from scipy.interpolate import CubicSpline
 
         for pieces in PIECES:
             at = np.linspace(0.0, duration, 2 * pieces + 1)
-            motions = [np.array([motion(t) for t in at.tolist()]) for motion in (self.rotation, self.x, self.y)]
-            angle = PPoly.from_bernstein_basis(BPoly.from_derivatives(at[::2], motions[0][::2]))
+            motions = [
+                np.zeros((len(at), 3)) if motion is still else np.array([motion(t) for t in at.tolist()])
+                for motion in (self.rotation, self.x, self.y)
+            ]
+            angle = quintic(at[::2], motions[0][::2])
             along, across = (CubicSpline(at[::2], motion[::2, 2]) for motion in motions[1:])
             exact = motions[0][:, 1], motions[1][:, 2], motions[2][:, 2]
             curves = zip((angle.derivative(), along, across), exact, strict=True)
             if all(abs(curve(at) - true).max() <= OFF * abs(true).max() for curve, true in curves):
                 break
         return np.concatenate([curve.c[::-1] for curve in (angle, along, across)]).T.copy()
+
+
+def quintic(times: Array, rows: Array) -> "PPoly":
+    """The piecewise polynomial of degree 5 through values, first and second derivatives (n, 3) at even times (n,)."""
+    from scipy.interpolate import PPoly
+
+    h, (value, rate, turn) = times[1] - times[0], rows[:-1].T
+    d = rows[1:, 0] - value - h * rate - 0.5 * h**2 * turn
+    e, f = h * (rows[1:, 1] - rate - h * turn), h**2 * (rows[1:, 2] - turn)
+    high = (6 * d - 3 * e + f / 2) / h**5, (7 * e - 15 * d - f) / h**4, (10 * d - 4 * e + f / 2) / h**3
+    return PPoly(np.stack([*high, 0.5 * turn, rate, value]), times)
 
 
 FIXED = Base()

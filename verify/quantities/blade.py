@@ -5,7 +5,7 @@ Both models are planar and undamped, without shear and rotary inertia of the sec
 
 from dataclasses import dataclass, replace
 from math import hypot, pi
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 import numpy as np
@@ -23,6 +23,7 @@ from verify.validation import check_integer, unit
 
 if TYPE_CHECKING:
     from verify.analysis.solution_cache import SolutionCache
+    from verify.chain.system import ChainSystem
     from verify.elements.nonlinear import NonlinearHermite
     from verify.scene.model import MovingBase
 
@@ -86,6 +87,7 @@ class Path(msgspec.Struct, frozen=True, kw_only=True):
     count: Size | None = None
     tolerance: Tolerance = 1e-7
     axial_stiffness: AxialStiffness | None = None
+    joints: settings.Joints = "series"
     samples: Annotated[int, Meta(ge=8, le=100_000, description="instants of the path")] = 401
 
 
@@ -111,6 +113,15 @@ def elements(beam: Beam, count: int, axial_stiffness: float | None) -> "Nonlinea
     return NonlinearHermite(beam, count, axial_stiffness=axial_stiffness)
 
 
+def links(beam: Beam, count: int, joints: settings.Joints, **motion: Any) -> "ChainSystem":
+    """Rigid links on a base, whose joints may follow the axial force. Raises InputError."""
+    from verify.chain.linearisation import tensioned
+    from verify.chain.system import build_system
+
+    system = replace(build_system(beam, count, joints="printed" if joints == "printed" else "series"), **motion)
+    return tensioned(system) if joints == "tensioned" else system
+
+
 def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
     from verify.elements.nonlinear_motion import large_motion
     from verify.elements.plane_elements import Forces
@@ -131,12 +142,11 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
 def _of_links(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
     from verify.chain.kinematics import at_rest
     from verify.chain.motion import check_moved, simulate
-    from verify.chain.system import build_system
 
-    system = replace(build_system(beam, count), base=base.motion, gravity=base.gravity)
+    system = links(beam, count, path.joints, base=base.motion, gravity=base.gravity)
     run = simulate(system, at_rest(system), times, tolerance=path.tolerance)
     check_moved(run)
-    return TipPath(times=times, line=run.in_base(), root_moments=system.stiffness[0] * run.angles[:, 0])
+    return TipPath(times=times, line=run.in_base(), root_moments=run.root_moments())
 
 
 blade = figures("blade", path_of, reads=("beam", "base"))
@@ -160,17 +170,14 @@ class Rotating(msgspec.Struct, frozen=True, kw_only=True):
     def frequency_hz(self, scene: Scene, *, flapping: bool) -> float:
         """Natural frequency, Hz. Raises InputError."""
         from verify.chain.kinematics import at_rest
-        from verify.chain.linearisation import linearise, tensioned
-        from verify.chain.system import build_system
+        from verify.chain.linearisation import linearise
 
         count, (rate, radius) = self.count or 2 * COUNTS[self.model], _rotation(scene, self.rate)
         check_integer("count", count, self.mode)
         if self.model == "fem":
             spun = elements(scene.beam, count, self.axial_stiffness).bend(rate=rate, hub_radius=radius)
             return float(spun.frequencies_hz(flapping=flapping)[self.mode - 1])
-        system = build_system(scene.beam, count, joints="printed" if self.joints == "printed" else "series")
-        system = replace(system, hub_rate=rate, base=Base(hub_radius=radius))
-        system = tensioned(system) if self.joints == "tensioned" else system
+        system = links(scene.beam, count, self.joints, hub_rate=rate, base=Base(hub_radius=radius))
         omega = float(linearise(system, at_rest(system)).frequencies()[self.mode - 1])
         # in the plane the centrifugal force takes the square of the rate off the stiffness over the mass
         return (hypot(omega, rate) if flapping else omega) / (2.0 * pi)

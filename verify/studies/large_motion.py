@@ -13,6 +13,7 @@ from verify.formatting import unit_over, with_unit
 from verify.quantities.blade import COUNTS, AxialStiffness, Path, TipPath, Tolerance, elements, path_of
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Movie, Result, Table
+from verify.settings import Joints
 from verify.studies.base import Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, percent, si
 
@@ -41,6 +42,7 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     links: Annotated[int, Meta(ge=2, le=1000, description="Rigid links, and twice as many.")] = COUNTS["segment"]
     elements: Annotated[int, Meta(ge=2, le=1000, description="Nonlinear elements, and twice as many.")] = COUNTS["fem"]
     tolerance: Tolerance = 1e-7
+    joints: Joints = "series"
     axial_stiffness: AxialStiffness | None = None
     samples: Annotated[int, Meta(ge=8, le=100_000, description="Stored instants, ends included.")] = 401
 
@@ -64,6 +66,7 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 progress(f"{count} {TITLES[model]}")
                 options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
                 options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
+                options |= {"joints": self.joints}
                 runs.append((TITLES[model], count, path_of(scene, cache, convert(options, Path))))
         _, links, fewer, best = (path for *_, path in runs)
         between = links.distance(best)
