@@ -21,7 +21,8 @@ def differentiate(
 
     `rows`, (n, points, 2, 4): r' and r'' by the values of one coordinate; `axial`, `bending`, (n, points): EA ds and
     EI ds; `at_rest`: stretch and curvature, (n, points) each, without strain; `point`, (5, 4): working space for
-    derivatives by a = r' and b = r''. With p and t, -b and a turned by 90 degrees, those of kappa = a x b / J^2 are p/J^2 - 2 kappa a/J^2 by a and t/J^2 by b.
+    derivatives by a = r' and b = r''. With p and t, -b and a turned by 90 degrees, those of kappa = a x b / J^2 are
+    p/J^2 - 2 kappa a/J^2 by a and t/J^2 by b.
     """
     for e in range(values.shape[0]):
         for q in range(axial.shape[1]):
