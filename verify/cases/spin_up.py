@@ -40,7 +40,7 @@ def largest(lags: Array) -> float:
     from scipy.interpolate import CubicSpline
 
     curve = CubicSpline(TIMES, lags)
-    return float(curve(curve.derivative().roots(extrapolate=False)).min()) / BEAM.length
+    return float(curve(np.append(TIMES, curve.derivative().roots(extrapolate=False))).min()) / BEAM.length
 
 
 @case("spin-up", -0.0573750, 2e-7, RIGID)
