@@ -18,6 +18,7 @@ from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
+from verify.linear.step_schemes import RK4 as RK4_SCHEME
 from verify.problem.base_motion import FIXED
 from verify.segments.chain import Motions, link_mass, plain_factors
 from verify.segments.reading import contact_line
@@ -173,7 +174,7 @@ def _stable_step(omega: float, damping: float) -> float:
     122.6 degrees.
     """
     fastest = max(omega, 0.5 * damping + np.sqrt(max(0.25 * damping**2 - omega**2, 0.0)))
-    return float((2.6156 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
+    return float((2.6156 if damping else RK4_SCHEME.limit) / fastest) if fastest else float("inf")
 
 
 def elastic_step_limit(system: ChainSystem) -> float:

@@ -2,8 +2,9 @@
 
 J. Chung and G. M. Hulbert, J. Appl. Mech. 60 (1993) 371: order 2, unconditionally stable for linear problems; `RHO` is
 the factor by which a step multiplies the fastest modes. Those are axial and short bending modes, which no step for the
-motion resolves; slow modes lose 0.0007 (omega h)^3 of their amplitude per radian, and the energy balance says what was
-lost. The base moves as prescribed; in its frame that is inertia: Coriolis, centrifugal, Euler, translation.
+motion resolves; slow modes lose 0.0007 (omega h)^3 of their amplitude per radian (`linear.step_schemes`), and the
+energy balance says what was lost. The base moves as prescribed; in its frame that is inertia: Coriolis, centrifugal,
+Euler, translation.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,14 +18,13 @@ from verify.arrays import Array, ComplexArray
 from verify.elements.nonlinear import NonlinearHermite
 from verify.elements.plane_elements import NONE, QUARTER, Forces
 from verify.errors import InputError, shown
+from verify.linear.step_schemes import alphas
 from verify.problem.base_motion import FIXED, Base
 from verify.problem.beam import PointForce
 from verify.validation import check_number
 
 RHO = 0.8  # spectral radius at infinite frequency: 15 steps leave a thirtieth of the fastest modes
-ALPHA_M, ALPHA_F = (2.0 * RHO - 1.0) / (RHO + 1.0), RHO / (RHO + 1.0)
-GAMMA = 0.5 - ALPHA_M + ALPHA_F
-BETA = 0.25 * (1.0 - ALPHA_M + ALPHA_F) ** 2
+ALPHA_M, ALPHA_F, GAMMA, BETA = alphas(RHO)
 ERROR = abs(BETA - 1.0 / 6.0)
 """Of the third derivative times h^3 in a step of Newmark's method (O. C. Zienkiewicz and Y. M. Xie, Earthquake Eng.
 Struct. Dyn. 20 (1991) 871). An upper bound: that of generalised-alpha is less by half of ALPHA_F - ALPHA_M, 0.086."""
@@ -62,7 +62,7 @@ class NonlinearMotion:
 
     @property
     def energy_lost(self) -> float:
-        """Energy that the steps took, over the largest energy, with the error of the work's trapezoids; of any sign."""
+        """Energy that the steps took, over the largest energy, of any sign: that of unresolved axial waves is added."""
         kinetic, strain, work = self.energies
         return float((work - kinetic - strain)[-1] - (work - kinetic - strain)[0]) / float((kinetic + strain).max())
 
@@ -220,8 +220,9 @@ class _Run:
         )
         moving = rates.reshape(len(at), -1)[:, self.model.values]
         kinetic = 0.5 * np.einsum("tni,nij,tnj->t", moving, self.mass, moving)
-        power = np.array([self.external(now.time, now.state, now.rate)[0] @ now.rate.ravel() for now in instants])
-        work = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(at) * (power[1:] + power[:-1]))])
+        forces = np.array([self.external(now.time, now.state, now.rate)[0] for now in instants])
+        shares = 0.5 * (forces[1:] + forces[:-1]) * np.diff(states.reshape(len(at), -1), axis=0)
+        work = np.concatenate([[0.0], np.cumsum(shares.sum(axis=1))])  # exact for constant and for centrifugal forces
         return NonlinearMotion(
             model=self.model,
             times=times,

@@ -47,6 +47,10 @@ class TipPath:
     """(n, points, 2), m: joints of links or nodes of elements, the tip last."""
     root_moments: Array
     """(n,), N m: bending moment at the base."""
+    step: float
+    """Mean time step, s."""
+    energy_lost: float = 0.0
+    """By the steps of elements, over the largest energy; of any sign."""
 
     @property
     def tip(self) -> Array:
@@ -125,7 +129,13 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     bend = 6.0 * (r1 - r0) / size**2 - (4.0 * a0 + 2.0 * a1) / size  # r'' of the cubic at its left end
     curvature = (a0[:, 0] * bend[:, 1] - a0[:, 1] * bend[:, 0]) / (a0 * a0).sum(axis=1)
     stiffness = beam.pieces[0].bending_stiffness * (beam.supports[0] == "clamped")
-    return TipPath(times=times, line=run.states[:, :, 0], root_moments=stiffness * curvature)
+    return TipPath(
+        times=times,
+        line=run.states[:, :, 0],
+        root_moments=stiffness * curvature,
+        step=base.duration / run.steps,
+        energy_lost=run.energy_lost,
+    )
 
 
 def _of_links(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
@@ -136,7 +146,12 @@ def _of_links(beam: Beam, base: "MovingBase", path: Path, count: int, times: Arr
     system = replace(build_system(beam, count), base=base.motion, gravity=base.gravity)
     run = simulate(system, at_rest(system), times, tolerance=path.tolerance)
     check_moved(run)
-    return TipPath(times=times, line=run.in_base(), root_moments=system.stiffness[0] * run.angles[:, 0])
+    return TipPath(
+        times=times,
+        line=run.in_base(),
+        root_moments=system.stiffness[0] * run.angles[:, 0],
+        step=base.duration / run.statistics.steps,
+    )
 
 
 blade = figures("blade", path_of, reads=("beam", "base"))
