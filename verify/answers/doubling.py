@@ -90,7 +90,7 @@ def _of_base(scene: Scene, error: float, progress: Callable[[str], object]) -> R
         progress(f"{count} {TITLES[model]}, tolerance {tolerance:.2g}")
         options: dict[str, Any] = {"model": model, "count": count, "tolerance": tolerance, "samples": study.samples}
         options |= {"axial_stiffness": study.axial_stiffness}
-        return _timed(lambda: path_of(scene, solutions, convert(options, Path)))
+        return _timed(lambda: path_of(scene, solutions, convert(options, Path), progress))
 
     def off(one: tuple[float, TipPath | str], other: tuple[float, TipPath | str]) -> float:
         return inf if isinstance(one[1], str) or isinstance(other[1], str) else one[1].distance(other[1])

@@ -196,12 +196,13 @@ def simulate(
     step: float | None = None,
     tolerance: float = 1e-8,
     progress: Progress = lambda part: None,
+    most_steps: float = np.inf,
 ) -> RigidMotion:
     """The motion from `start` at ascending `times`, from start.time on; the last one is the exact end of a step.
 
     A fixed `step`, at most `step_limit`, is one of RK4; without it Dormand and Prince's pair of orders 5 and 4 has an
     error per step of at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
-    InputError.
+    InputError, also where more than `most_steps` are to be expected.
     """
     began = perf_counter()
     if system.base is not FIXED and (system.tip == "roller" or system.hub_rate):
@@ -219,7 +220,9 @@ def simulate(
     model = rigid_links.flatten(system, float(samples[-1]))
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
-    run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
+    run = integrate(
+        rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress, most_steps
+    )
     statistics = _statistics(run, run.furthest, began, ready)
     return RigidMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
 

@@ -3,8 +3,10 @@
 Both models are planar and undamped, without shear and rotary inertia of the section; links do not stretch.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import hypot, pi
+from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
 STIFF = 1e8  # EA over EI/L^2 of elements whose EA is unknown: rounding leaves eight digits of bending
 COUNTS = {"segment": 20, "fem": 8}
 """Numbers within 0.1 % of the tip's path of a spin-up over ten periods (docs/findings/large-motion.md)."""
+MOST_STEPS = {"segment": 1e7, "fem": 1e6}
+"""Time steps at which a run is refused: minutes of 20 links; of 8 elements a quarter of an hour, and 1 GB of states."""
+TOLD = 2.0  # s of a run after which the time that it takes on is told
 Model = Annotated[Literal["segment", "fem"], Meta(description="segment: rigid links; fem: nonlinear elements")]
 AxialStiffness = Annotated[
     float, unit("N"), Meta(gt=0, description="EA of elements, N; default: the section's, 1e8 EI/L^2 where unknown")
@@ -93,15 +98,20 @@ class Path(msgspec.Struct, frozen=True, kw_only=True):
     samples: Annotated[int, Meta(ge=8, le=100_000, description="instants of the path")] = 401
 
 
-def path_of(scene: Scene, cache: "SolutionCache", path: Path) -> TipPath:
-    """The motion on the scene's base from the straight beam that moves with it. Raises InputError."""
+def path_of(
+    scene: Scene, cache: "SolutionCache", path: Path, progress: Callable[[str], object] = lambda text: None
+) -> TipPath:
+    """The motion on the scene's base from the straight beam that moves with it. Raises InputError.
+
+    `progress` is told the time that a run of more than `TOLD` seconds takes on.
+    """
     if scene.base is None:
         raise InputError("base is missing: add [base] with a duration and a rotation, x or y")
     key = ("blade", scene.base, path)
     if key not in cache.motors:
         times, count = np.linspace(0.0, scene.base.duration, path.samples), path.count or COUNTS[path.model]
         run = _of_links if path.model == "segment" else _of_elements
-        cache.motors[key] = run(scene.beam, scene.base, path, count, times)
+        cache.motors[key] = run(scene.beam, scene.base, path, count, times, _left(progress))
     stored: TipPath = cache.motors[key]
     return stored
 
@@ -115,7 +125,22 @@ def elements(beam: Beam, count: int, axial_stiffness: float | None) -> "Nonlinea
     return NonlinearHermite(beam, count, axial_stiffness=axial_stiffness)
 
 
-def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
+def _left(progress: Callable[[str], object]) -> Callable[[float], None]:
+    """Of the share of a run that is done: tell once the time that the rest takes at the pace of the first steps."""
+    began, told = perf_counter(), False
+
+    def done(share: float) -> None:
+        nonlocal told
+        if not told and share > 0.0 and (passed := perf_counter() - began) > TOLD:
+            told = True
+            progress(f"about {passed * (1.0 / share - 1.0):.2g} s left")
+
+    return done
+
+
+def _of_elements(
+    beam: Beam, base: "MovingBase", path: Path, count: int, times: Array, done: Callable[[float], None]
+) -> TipPath:
     from verify.elements.nonlinear_motion import large_motion
     from verify.elements.plane_elements import Forces
 
@@ -123,7 +148,16 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     rate, start = base.motion.rotation(0.0)[1], model.straight
     if rate and beam.supports[0] == "clamped":  # else the beam rings along its length
         start = model.bend(rate=rate, hub_radius=base.hub_radius).state
-    run = large_motion(model, times, forces=weight, base=base.motion, start=start, tolerance=path.tolerance)
+    run = large_motion(
+        model,
+        times,
+        forces=weight,
+        base=base.motion,
+        start=start,
+        tolerance=path.tolerance,
+        progress=done,
+        most_steps=MOST_STEPS[path.model],
+    )
     (r0, a0), (r1, a1) = np.moveaxis(run.states[:, :2], 0, -2)
     size = float(model.nodes[1])
     bend = 6.0 * (r1 - r0) / size**2 - (4.0 * a0 + 2.0 * a1) / size  # r'' of the cubic at its left end
@@ -138,13 +172,17 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     )
 
 
-def _of_links(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
+def _of_links(
+    beam: Beam, base: "MovingBase", path: Path, count: int, times: Array, done: Callable[[float], None]
+) -> TipPath:
     from verify.chain.kinematics import at_rest
     from verify.chain.motion import check_moved, simulate
     from verify.chain.system import build_system
 
     system = replace(build_system(beam, count), base=base.motion, gravity=base.gravity)
-    run = simulate(system, at_rest(system), times, tolerance=path.tolerance)
+    run = simulate(
+        system, at_rest(system), times, tolerance=path.tolerance, progress=done, most_steps=MOST_STEPS[path.model]
+    )
     check_moved(run)
     return TipPath(
         times=times,

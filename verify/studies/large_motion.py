@@ -77,7 +77,7 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 progress(f"{count} {TITLES[model]}")
                 options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
                 options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
-                runs.append((TITLES[model], count, path_of(scene, cache, convert(options, Path))))
+                runs.append((TITLES[model], count, path_of(scene, cache, convert(options, Path), progress)))
         _, links, fewer, best = (path for *_, path in runs)
         between = links.distance(best)
         sources = {
