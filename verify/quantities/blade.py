@@ -32,7 +32,7 @@ STIFF = 1e8  # EA over EI/L^2 of elements whose EA is unknown: rounding leaves e
 COUNTS = {"segment": 20, "fem": 8}
 """Numbers within 0.1 % of the tip's path of a spin-up over ten periods (docs/findings/large-motion.md)."""
 MOST_STEPS = {"segment": 1e7, "fem": 1e6}
-"""Time steps at which a run is refused: minutes of 20 links; of 8 elements a quarter of an hour, and 1 GB of states."""
+"""Time steps at which a run is refused: minutes of 20 links; of 8 elements twenty minutes, and 1 GB of states."""
 TOLD = 2.0  # s of a run after which the time that it takes on is told
 Model = Annotated[Literal["segment", "fem"], Meta(description="segment: rigid links; fem: nonlinear elements")]
 AxialStiffness = Annotated[
