@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from math import inf
 from pathlib import Path as FilePath
 from time import process_time
@@ -18,7 +18,8 @@ from verify.quantities.blade import Model, Path, TipPath, path_of
 from verify.report.result import Column, Result, Table
 from verify.scene.load import load_scene
 from verify.scene.model import Scene
-from verify.studies.large_motion import TITLES, LargeMotion
+from verify.studies.base import Progress
+from verify.studies.large_motion import TITLES, LargeMotion, told
 from verify.validation import check_number
 
 T = TypeVar("T")
@@ -59,7 +60,7 @@ class Tried(NamedTuple):
 
 
 def choose_motion(
-    scene: Any, error: float, overrides: Sequence[str] = (), progress: Callable[[str], object] = str
+    scene: Any, error: float, overrides: Sequence[str] = (), progress: Progress = lambda step: None
 ) -> Result:
     """Numbers of links and elements, and time steps, for an error of the tip's path on a moving base, or of a case.
 
@@ -80,17 +81,17 @@ def choose_motion(
 
 
 @one_blas_thread()
-def _of_base(scene: Scene, error: float, progress: Callable[[str], object]) -> Result:
+def _of_base(scene: Scene, error: float, progress: Progress) -> Result:
     study, pieces = scene.studies.get(LargeMotion.name, LargeMotion()), len(scene.beam.pieces)
     study.check(scene)
     solutions, first = SolutionCache(scene.beam), {model: max(number, pieces) for model, number in FIRST.items()}
 
     @cache
     def run(model: Model, count: int, tolerance: float) -> tuple[float, TipPath | str]:
-        progress(f"{count} {TITLES[model]}, tolerance {tolerance:.2g}")
+        progress(what := f"{count} {TITLES[model]}, tolerance {tolerance:.2g}")
         options: dict[str, Any] = {"model": model, "count": count, "tolerance": tolerance, "samples": study.samples}
         options |= {"axial_stiffness": study.axial_stiffness}
-        return _timed(lambda: path_of(scene, solutions, convert(options, Path), progress))
+        return _timed(lambda: path_of(scene, solutions, convert(options, Path), partial(told, progress, what)))
 
     def off(one: tuple[float, TipPath | str], other: tuple[float, TipPath | str]) -> float:
         return inf if isinstance(one[1], str) or isinstance(other[1], str) else one[1].distance(other[1])

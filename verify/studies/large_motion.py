@@ -1,5 +1,6 @@
 """A beam on a moving base: rigid links and nonlinear elements in time, their difference as the uncertainty."""
 
+from functools import partial
 from math import log, pi
 from typing import Annotated, Any
 
@@ -74,10 +75,13 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         runs = list[tuple[str, int, TipPath]]()
         for model, least in (("segment", self.links), ("fem", self.elements)):
             for count, looser in ((least, LOOSER), (2 * least, 1.0)):
-                progress(f"{count} {TITLES[model]}")
+                what = f"{count} {TITLES[model]}"
+                progress(what)
                 options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
                 options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
-                runs.append((TITLES[model], count, path_of(scene, cache, convert(options, Path), progress)))
+                runs.append(
+                    (TITLES[model], count, path_of(scene, cache, convert(options, Path), partial(told, progress, what)))
+                )
         _, links, fewer, best = (path for *_, path in runs)
         between = links.distance(best)
         sources = {
@@ -125,6 +129,11 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             data={"times": best.times, "links": links.tip, "elements": best.tip, "axial_stiffness": axial},
             margins=margins,
         )
+
+
+def told(progress: Progress, what: str, left: str) -> None:
+    """Call `progress` with a run and the time that it takes on."""
+    progress(f"{what}, {left}")
 
 
 def _damping(hertz: Array, links: TipPath, best: TipPath) -> Table:
