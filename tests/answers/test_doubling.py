@@ -73,6 +73,7 @@ def test_a_limit_of_time_ends_the_doubling_with_a_sentence(monkeypatch):
         ("creep-speed", 0.01, "fixed"),
         ("pendulum", 1e-7, "known"),
         (falling(), 1.5, "error"),
+        (scene_from({"name": "lossy", "beam": ROD | {"loss_factor": 0.02}, "base": FALL}), 0.01, "loss_factor"),
         ("pendulun", 0.01, "scene"),
     ],
 )

@@ -10,11 +10,12 @@ from typing import Any, NamedTuple, TypeVar
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, per_cent
+from verify.answers.beams import AnyBeam
 from verify.blas import one_blas_thread
 from verify.cases.base import Case
 from verify.convert import convert
 from verify.errors import InputError
-from verify.quantities.blade import Model, Path, TipPath, path_of
+from verify.quantities.blade import Model, Path, TipPath, elements, path_of
 from verify.report.result import Column, Result, Table
 from verify.scene.load import load_scene
 from verify.scene.model import Scene
@@ -33,7 +34,8 @@ TOLERANCE = 1e-4  # with these numbers: an error of per cents in time as in spac
 TIGHTER: dict[Model, float] = {"fem": 64.0, "segment": 4.0}
 """Tolerance over that of twice the number. The error in space falls by 16 and 4, that in time as the power 2/3 of the
 tolerance of a step of order 2, and in proportion to that of explicit steps of order 5."""
-LOOSER = 4.0  # factor by which a tolerance grows while the error is met
+LOOSER, LOOSEST = 4.0, 1e-3
+"""Factor by which a tolerance grows while the error is met, and the largest: longer steps follow no motion."""
 COARSE, STALLED = 3, 0.9
 """Runs with too few parts for an order; error over that of half the number, 1/4 at order 2, due to another cause."""
 STALLS = "as are half as many, so that another cause limits it (links do not stretch): give a larger error"
@@ -60,7 +62,7 @@ class Tried(NamedTuple):
 
 
 def choose_motion(
-    scene: Any, error: float, overrides: Sequence[str] = (), progress: Progress = lambda step: None
+    scene: AnyBeam, error: float, overrides: Sequence[str] = (), progress: Progress = lambda step: None
 ) -> Result:
     """Numbers of links and elements, and time steps, for an error of the tip's path on a moving base, or of a case.
 
@@ -84,12 +86,13 @@ def choose_motion(
 def _of_base(scene: Scene, error: float, progress: Progress) -> Result:
     study, pieces = scene.studies.get(LargeMotion.name, LargeMotion()), len(scene.beam.pieces)
     study.check(scene)
+    elements(scene.beam, pieces, study.axial_stiffness)  # raises for what neither model has
     solutions, first = SolutionCache(scene.beam), {model: max(number, pieces) for model, number in FIRST.items()}
 
     @cache
-    def run(model: Model, count: int, tolerance: float) -> tuple[float, TipPath | str]:
+    def run(model: Model, count: int, tolerance: float, samples: int = study.samples) -> tuple[float, TipPath | str]:
         progress(what := f"{count} {TITLES[model]}, tolerance {tolerance:.2g}")
-        options: dict[str, Any] = {"model": model, "count": count, "tolerance": tolerance, "samples": study.samples}
+        options: dict[str, Any] = {"model": model, "count": count, "tolerance": tolerance, "samples": samples}
         options |= {"axial_stiffness": study.axial_stiffness}
         return _timed(lambda: path_of(scene, solutions, convert(options, Path), partial(told, progress, what)))
 
@@ -97,12 +100,12 @@ def _of_base(scene: Scene, error: float, progress: Progress) -> Result:
         return inf if isinstance(one[1], str) or isinstance(other[1], str) else one[1].distance(other[1])
 
     for model, number in first.items():
-        run(model, number, 1e-2)  # compiles and imports
+        run(model, number, TOLERANCE, 8)  # compiles and imports
     count, tolerance = first["fem"], TOLERANCE
     before: tuple[float, TipPath | str] = 0.0, ""
     finest = run("fem", count, tolerance)
     while (between := off(before, finest)) > error:
-        if SLOWER * finest[0] > MINUTE:
+        if SLOWER * finest[0] > MINUTE or count > MOST:
             own = f"{count} elements move the tip by {per_cent(between)}"
             raise InputError(f"error = {error!r}: {finest[1] if isinstance(finest[1], str) else own}, {LATE}")
         count, tolerance = 2 * count, tolerance / TIGHTER["fem"]
@@ -151,7 +154,7 @@ def _smallest(
     while found.parts - low > 1:
         tried = run((low + found.parts) // 2, tolerance)
         low, found = (low, tried) if tried.error <= error else (tried.parts, found)
-    while (tolerance := LOOSER * tolerance) <= 1e-2 and (tried := run(found.parts, tolerance)).error <= error:
+    while (tolerance := LOOSER * tolerance) <= LOOSEST and (tried := run(found.parts, tolerance)).error <= error:
         found = tried
     return found
 
