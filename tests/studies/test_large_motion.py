@@ -12,7 +12,7 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.cli import status_of
 from verify.quantities import blade
 from verify.quantities.base import evaluate
-from verify.quantities.blade import Path, path_of
+from verify.quantities.blade import Path, path_of, told_path
 from verify.scene.load import scene_from
 from verify.studies.base import result_of
 
@@ -155,7 +155,7 @@ def test_a_motion_is_refused_by_the_steps_that_it_would_take(model, monkeypatch)
     for share in (0.4, 2.5):
         monkeypatch.setitem(blade.MOST_STEPS, model, share * taken)
         if share > 1.0:
-            assert path_of(shaken, SolutionCache(shaken.beam), Path(**options), told.append).step == path.step
+            assert told_path(shaken, SolutionCache(shaken.beam), Path(**options), told.append).step == path.step
         else:
             with pytest.raises(InputError, match="steps"):
                 path_of(shaken, SolutionCache(shaken.beam), Path(**options))

@@ -15,7 +15,7 @@ from verify.blas import one_blas_thread
 from verify.cases.base import Case
 from verify.convert import convert
 from verify.errors import InputError
-from verify.quantities.blade import Model, Path, TipPath, elements, path_of
+from verify.quantities.blade import Model, Path, TipPath, elements, told_path
 from verify.report.result import Column, Result, Table
 from verify.scene.load import load_scene
 from verify.scene.model import Scene
@@ -94,7 +94,7 @@ def _of_base(scene: Scene, error: float, progress: Progress) -> Result:
         progress(what := f"{count} {TITLES[model]}, tolerance {tolerance:.2g}")
         options: dict[str, Any] = {"model": model, "count": count, "tolerance": tolerance, "samples": samples}
         options |= {"axial_stiffness": study.axial_stiffness}
-        return _timed(lambda: path_of(scene, solutions, convert(options, Path), partial(told, progress, what)))
+        return _timed(lambda: told_path(scene, solutions, convert(options, Path), partial(told, progress, what)))
 
     def off(one: tuple[float, TipPath | str], other: tuple[float, TipPath | str]) -> float:
         return inf if isinstance(one[1], str) or isinstance(other[1], str) else one[1].distance(other[1])

@@ -98,13 +98,13 @@ class Path(msgspec.Struct, frozen=True, kw_only=True):
     samples: Annotated[int, Meta(ge=8, le=100_000, description="instants of the path")] = 401
 
 
-def path_of(
-    scene: Scene, cache: "SolutionCache", path: Path, progress: Callable[[str], object] = lambda text: None
-) -> TipPath:
-    """The motion on the scene's base from the straight beam that moves with it. Raises InputError.
+def path_of(scene: Scene, cache: "SolutionCache", path: Path) -> TipPath:
+    """The motion on the scene's base from the straight beam that moves with it. Raises InputError."""
+    return told_path(scene, cache, path, lambda left: None)
 
-    `progress` is told the time that a run of more than `TOLD` seconds takes on.
-    """
+
+def told_path(scene: Scene, cache: "SolutionCache", path: Path, progress: Callable[[str], object]) -> TipPath:
+    """That of `path_of`; `progress` is called with the time that a run of more than `TOLD` seconds takes on."""
     if scene.base is None:
         raise InputError("base is missing: add [base] with a duration and a rotation, x or y")
     key = ("blade", scene.base, path)

@@ -15,7 +15,7 @@ from verify.elements.nonlinear_motion import RHO
 from verify.errors import InputError
 from verify.formatting import unit_over, with_unit
 from verify.linear.step_schemes import DORMAND_PRINCE, generalised_alpha
-from verify.quantities.blade import COUNTS, AxialStiffness, Path, TipPath, Tolerance, elements, path_of
+from verify.quantities.blade import COUNTS, AxialStiffness, Path, TipPath, Tolerance, elements, told_path
 from verify.report.plotting import MovingLine
 from verify.report.result import Column, Movie, Result, Table
 from verify.studies.base import Progress, Scene, Study
@@ -80,7 +80,11 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
                 options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
                 runs.append(
-                    (TITLES[model], count, path_of(scene, cache, convert(options, Path), partial(told, progress, what)))
+                    (
+                        TITLES[model],
+                        count,
+                        told_path(scene, cache, convert(options, Path), partial(told, progress, what)),
+                    )
                 )
         _, links, fewer, best = (path for *_, path in runs)
         between = links.distance(best)
