@@ -79,32 +79,11 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 progress(what)
                 options: dict[str, Any] = {"axial_stiffness": self.axial_stiffness, "samples": self.samples}
                 options |= {"model": model, "count": count, "tolerance": min(looser * self.tolerance, 1e-2)}
-                runs.append(
-                    (
-                        TITLES[model],
-                        count,
-                        told_path(scene, cache, convert(options, Path), partial(told, progress, what)),
-                    )
-                )
+                path = told_path(scene, cache, convert(options, Path), partial(told, progress, what))
+                runs.append((TITLES[model], count, path))
         _, links, fewer, best = (path for *_, path in runs)
         between = links.distance(best)
-        sources = {
-            f"difference of {2 * self.links} links and {2 * self.elements} elements": between,
-            f"numbers and steps of {self.elements} and {2 * self.elements} elements": fewer.distance(best),
-        }
-        remedy = "give more large-motion.links and .elements, or a smaller .tolerance; links never stretch"
-        margins = [Margin(name=name, size=size, harm="discretisation", remedy=remedy) for name, size in sources.items()]
-        margins.append(
-            Margin(
-                name="energy that time steps take or add",
-                size=abs(best.energy_lost),
-                condition=f"the time steps of {2 * self.elements} elements may take or add energy",
-                failure=f"the time steps of {2 * self.elements} elements are too long, they take or add "
-                f"{per_cent(best.energy_lost)} of the energy",
-                remedy="give a smaller large-motion.tolerance",
-                harm="discretisation",
-            )
-        )
+        margins = self._margins(between, fewer.distance(best), abs(best.energy_lost))
         size, at = max(best.largest(-1.0), best.largest(1.0))
         stated = f"Largest deflection of the tip {with_unit(size)} at {at:.4g} s, ± {with_unit(between * best.moved)}"
         axial, notes = elements(scene.beam, self.elements, self.axial_stiffness).axial_stiffness, list(NOTES)
@@ -133,6 +112,25 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             data={"times": best.times, "links": links.tip, "elements": best.tip, "axial_stiffness": axial},
             margins=margins,
         )
+
+    def _margins(self, between: float, refined: float, energy: float) -> list[Margin]:
+        """Of the difference of models, of numbers and steps, and of the energy that steps take or add."""
+        finest = f"{2 * self.elements} elements"
+        remedy = "give more large-motion.links and .elements, or a smaller .tolerance; links never stretch"
+        sources = {
+            f"difference of {2 * self.links} links and {finest}": between,
+            f"numbers and steps of {self.elements} and {finest}": refined,
+        }
+        steps = Margin(
+            name="energy that time steps take or add",
+            size=energy,
+            condition=f"the time steps of {finest} may take or add energy",
+            failure=f"the time steps of {finest} are too long, they take or add {per_cent(energy)} of the energy",
+            remedy="give a smaller large-motion.tolerance",
+            harm="discretisation",
+        )
+        both = [Margin(name=name, size=size, harm="discretisation", remedy=remedy) for name, size in sources.items()]
+        return [*both, steps]
 
 
 def told(progress: Progress, what: str, left: str) -> None:
