@@ -39,7 +39,7 @@ class Pace:
         needed = steps + (1.0 - share) * new / max(share - self.share, 1e-300)
         if needed > self.most:
             raise InputError(
-                f"duration = {self.duration:g} s: this motion needs about {needed:.2g} time steps, more than "
+                f"duration = {self.duration:g} s: this motion needs about {needed:.3g} time steps, more than "
                 f"{self.most:g}: give a shorter one, a slower base, a stiffer beam or fewer links and elements"
             )
         self.steps, self.share = steps, share

@@ -105,9 +105,10 @@ def _of_base(scene: Scene, error: float, progress: Progress) -> Result:
     before: tuple[float, TipPath | str] = 0.0, ""
     finest = run("fem", count, tolerance)
     while (between := off(before, finest)) > error:
-        if SLOWER * finest[0] > MINUTE or count > MOST:
-            own = f"{count} elements move the tip by {per_cent(between)}"
-            raise InputError(f"error = {error!r}: {finest[1] if isinstance(finest[1], str) else own}, {LATE}")
+        if isinstance(finest[1], str) and count > 2**COARSE:
+            raise InputError(finest[1])
+        if SLOWER * finest[0] > MINUTE:
+            raise InputError(f"error = {error!r}: {count} elements move the tip by {per_cent(between)}, {LATE}")
         count, tolerance = 2 * count, tolerance / TIGHTER["fem"]
         before, finest = finest, run("fem", count, tolerance)
     found = dict[str, Tried]()
