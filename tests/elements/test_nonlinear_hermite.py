@@ -30,7 +30,9 @@ from verify.chain import motion
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
 from verify.chain.system import ChainState, LinkLoad, build_system
+from verify.elements.nonlinear_motion import RHO
 from verify.elements.plane_elements import Forces
+from verify.linear.step_schemes import generalised_alpha
 from verify.problem.base_motion import Base, polynomial, tabulated
 
 CANTILEVER = Beam(length=1.3, bending_stiffness=0.7, mass_per_length=2.1, supports=("clamped", "free"))
@@ -275,6 +277,19 @@ def test_a_pendulum_swings_as_the_chain_of_links_does():
     assert falls.tip[1:] == pytest.approx(links[1:], abs=1.5e-4)
     assert falls.tip[1] == pytest.approx([0.766509, -0.519676], abs=1.5e-4)
     assert abs(falls.energy_lost) < 1e-4
+
+
+def test_a_mode_loses_the_energy_that_steps_of_the_mean_size_take_and_up_to_as_much_by_their_changes():
+    model = elements(6, axial=1e4)
+    omega, span = 2.0 * pi * model.bend().frequencies_hz()[1], 40.0 * 2.0 * pi
+    start, shapes = model.straight.copy(), HermiteModel(CANTILEVER, 6).modes(2).shapes
+    for k in (0, 1):
+        start[:, k, 1] = 3e-5 * shapes(model.nodes, k)[1]
+    run = large_motion(model, [0.0, span / omega], start=start, tolerance=5e-7)
+    x = span / run.steps
+    mean = 1.0 - np.exp(2.0 * span * generalised_alpha(RHO).undamped(np.array(x)).real)
+    assert mean == pytest.approx(2.0 * span * x**3 * 0.2**3 / 1.8**3 / 2.0, rel=0.15)  # Chung and Hulbert
+    assert mean < run.energy_lost < 2.0 * mean
 
 
 def test_free_flight_keeps_momentum_and_energy():

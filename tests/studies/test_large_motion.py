@@ -10,7 +10,9 @@ import pytest
 from verify import InputError, run_scene
 from verify.analysis.solution_cache import SolutionCache
 from verify.cli import status_of
+from verify.quantities import blade
 from verify.quantities.base import evaluate
+from verify.quantities.blade import Path, path_of, told_path
 from verify.scene.load import scene_from
 from verify.studies.base import result_of
 
@@ -114,6 +116,59 @@ def test_too_few_links_and_elements_are_not_trusted():
     ran = run_scene(swung)
     assert ran.verdict.level == "not trusted"
     assert ran.results["large-motion"].summary == ""
+
+
+def test_the_steps_of_elements_damp_its_modes_as_chung_and_hulbert_state():
+    shaken = scene("y = [0.0, 0.0, 0.3]")
+    rows = result_of("large-motion", shaken, SolutionCache(shaken.beam)).tables[1].records()
+    first, second = rows[0], rows[1]
+    assert first["frequency"] == pytest.approx(1.8751040687**2 * UNIT / (2.0 * pi), rel=1e-3)
+    assert second["ωh, elements"] / first["ωh, elements"] == pytest.approx((4.694091133 / 1.8751040687) ** 2, rel=2e-3)
+    small = first["ωh, elements"]
+    assert first["damping, elements"] == pytest.approx((0.2 / 1.8) ** 3 / 2.0 * small**3, rel=0.05 + small)
+    assert rows[3]["damping, links"] < 1e-3 * rows[3]["damping, elements"]
+    last = rows[-1]
+    steps = 3.0 * 2.0 * pi * last["frequency"] / last["ωh, elements"]
+    x, zeta = last["ωh, elements"], last["damping, elements"]  # per step exp(-zeta x) where zeta is small
+    assert np.exp(-steps * zeta * x) == pytest.approx(0.5, abs=0.05)
+
+
+def test_energy_that_long_steps_add_or_take_is_a_condition():
+    fall = {"duration": 1.1, "gravity": [0.0, -0.9]}
+    beam = {"length": 1.3, "bending_stiffness": 0.02, "mass_per_length": 0.8, "supports": ["pinned", "free"]}
+    levels = []
+    for tolerance in (1e-7, 3e-3):
+        tables = {"name": "f", "beam": beam, "base": fall, "large-motion": {"tolerance": tolerance}}
+        fell = scene_from(tables)
+        margins = result_of("large-motion", fell, SolutionCache(fell.beam)).margins
+        levels += [margin.level for margin in margins if "energy" in margin.name]
+    assert levels[0] == "trusted"
+    assert levels[1] != "trusted"
+
+
+@BOTH
+def test_a_base_that_turns_absurdly_fast_is_refused_before_it_takes_hours(model):
+    with pytest.raises(InputError, match="duration"):
+        measured(scene("rotation = [0.0, 0.0, 1e6]"), "lag", model=model, count=3)
+
+
+@BOTH
+def test_a_motion_is_refused_by_the_steps_that_it_would_take(model, monkeypatch):
+    options = {"model": model, "count": 4 if model == "fem" else 12, "tolerance": 1e-7}
+    shaken = scene_from(tomllib.loads(BLADE) | {"base": {"duration": 1.9, "y": [0.0, 0.0, 1.1, -0.3]}})
+    path = path_of(shaken, SolutionCache(shaken.beam), Path(**options))
+    taken = 1.9 / path.step
+    assert taken > 1000
+    told = []
+    monkeypatch.setattr(blade, "TOLD", 0.0)
+    for share in (0.4, 2.5):
+        monkeypatch.setitem(blade.MOST_STEPS, model, share * taken)
+        if share > 1.0:
+            assert told_path(shaken, SolutionCache(shaken.beam), Path(**options), told.append).step == path.step
+        else:
+            with pytest.raises(InputError, match="steps"):
+                path_of(shaken, SolutionCache(shaken.beam), Path(**options))
+    assert len(told) == 1
 
 
 def test_a_table_of_a_polynomial_moves_it_as_the_polynomial_does():

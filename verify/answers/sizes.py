@@ -16,13 +16,24 @@ from verify.validation import check_integer, check_number
 
 
 @one_blas_thread()
-def choose(beam: AnyBeam, mode: int | range, error: float, rules: Rules | Mapping[str, Any] | None = None) -> Result:
+def choose(
+    beam: AnyBeam, mode: int | range | None = None, error: float = 0.01, rules: Rules | Mapping[str, Any] | None = None
+) -> Result:
     """Smallest numbers of segments and elements from which on the errors of modes are at most `error`, and their time.
 
     `beam`: a beam, the name of a packaged scene, the path of one, or a phrase 'beam: 1 m x 40 x 8 mm steel'. `mode`:
     all modes up to it, numbered from 1, or those of a range. `error`: relative. `rules`: settings of the models,
     {"wall": ("half", "gregory")}. A row of the table, `tables[0].records()`, is a model. Raises InputError.
+
+    Without `mode` the error is that of the tip's path, of rigid links and nonlinear elements in the motion of a scene
+    with [base], or that of the case of known answer of this name; runs last up to a minute each.
     """
+    if mode is None:
+        from verify.answers.doubling import choose_motion
+
+        if rules:
+            raise InputError("rules: they are those of frequencies, give mode or leave them out")
+        return choose_motion(beam, error)
     if not isinstance(mode, range):
         check_integer("mode", mode, 1)
         mode = range(1, mode + 1)

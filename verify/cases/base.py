@@ -24,9 +24,14 @@ class Case:
     run: Callable[..., float]
     """The model, named by its docstring; an argument `count` is its number of links, points or steps."""
 
+    @property
+    def sized(self) -> bool:
+        """Whether a `count` may be given."""
+        return "count" not in self.inputs and "count" in inspect.signature(self.run).parameters
+
     def value(self, count: int | None = None) -> float:
         """The figure by the model. Raises InputError as `run` does, and for a `count` that it does not have."""
-        if count is not None and ("count" in self.inputs or "count" not in inspect.signature(self.run).parameters):
+        if count is not None and not self.sized:
             raise InputError(f"count = {count!r}: the size of case {self.name!r} is fixed, leave it out")
         return float(self.run(**self.inputs, **({} if count is None else {"count": count})))
 

@@ -43,7 +43,7 @@ def largest(lags: Array) -> float:
     from scipy.interpolate import CubicSpline
 
     curve = CubicSpline(TIMES, lags)
-    return float(curve(curve.derivative().roots(extrapolate=False)).min()) / BEAM.length
+    return float(curve(np.append(TIMES, curve.derivative().roots(extrapolate=False))).min()) / BEAM.length
 
 
 @case("spin-up", -0.057375066, 1e-7, RIGID)

@@ -18,6 +18,7 @@ from verify.chain.kinematics import at_rest, energies, place, project
 from verify.chain.system import ChainState, ChainSystem, link_at, straight_chain
 from verify.dynamics.result import END, Statistics
 from verify.errors import InputError
+from verify.linear.step_schemes import RK4 as RK4_SCHEME
 from verify.problem.base_motion import FIXED
 from verify.segments.chain import Motions, link_mass, plain_factors
 from verify.segments.reading import contact_line
@@ -183,7 +184,7 @@ def _stable_step(omega: float, damping: float) -> float:
     122.6 degrees.
     """
     fastest = max(omega, 0.5 * damping + np.sqrt(max(0.25 * damping**2 - omega**2, 0.0)))
-    return float((2.6156 if damping else 2.0 * np.sqrt(2.0)) / fastest) if fastest else float("inf")
+    return float((2.6156 if damping else RK4_SCHEME.limit) / fastest) if fastest else float("inf")
 
 
 def elastic_step_limit(system: ChainSystem) -> float:
@@ -205,12 +206,13 @@ def simulate(
     step: float | None = None,
     tolerance: float = 1e-8,
     progress: Progress = lambda part: None,
+    most_steps: float = np.inf,
 ) -> RigidMotion:
     """The motion from `start` at ascending `times`, from start.time on; the last one is the exact end of a step.
 
     A fixed `step`, at most `step_limit`, is one of RK4; without it Dormand and Prince's pair of orders 5 and 4 has an
     error per step of at most `tolerance` of the largest motion so far. A start off the roller is projected. Raises
-    InputError.
+    InputError, also where more than `most_steps` are to be expected.
     """
     began, follows = perf_counter(), len(system.softening) > 0
     if follows and any(any(load.force) for load in system.loads):
@@ -230,7 +232,9 @@ def simulate(
     model = rigid_links.flatten(system, float(samples[-1]))
     y, ready = rigid_links.begin(system, state, model[2]), perf_counter()
     table = RK4 if step else DORMAND_PRINCE
-    run = integrate(rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress)
+    run = integrate(
+        rigid_links.accelerate, model, table, n, y, start.time, samples, first, control, progress, most_steps
+    )
     statistics = _statistics(run, run.furthest, began, ready)
     motion = RigidMotion(system=system, times=samples[: len(run.kept)], states=run.kept, statistics=statistics)
     if follows and (far := abs(np.cumsum(motion.angles, axis=1)).max()) > STRAIGHT:

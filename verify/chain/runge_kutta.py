@@ -13,6 +13,7 @@ from numba import types
 
 from verify.arrays import Array, Indices
 from verify.jit import FAST, inline, jit
+from verify.timing import Pace
 
 _vector, _table = types.Array(types.float64, 1, "C"), types.Array(types.float64, 2, "C")
 RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
@@ -246,19 +247,24 @@ def integrate(
     step: float,
     control: tuple[float, float, float, float],
     progress: Callable[[float], None] = lambda part: None,
+    most: float = np.inf,
 ) -> Marched:
     """March from `y` at `start`, s, until all ascending `samples` are kept or the march ends; `y` becomes the end.
 
     `control` is the relative tolerance, those of coordinates and rates, and the mean change of a coordinate in a step
-    at which it has diverged. `progress` is called with the fraction of time done.
+    at which it has diverged. `progress` is called with the fraction of time done. Raises InputError where more than
+    `most` steps are to be expected.
     """
     k, kept, clock = np.zeros((len(tableau.c) + 3, y.size)), np.zeros((len(samples), y.size)), np.array([start, step])
     counts, numbers = np.zeros(3, dtype=np.int64), np.array([*control, 0.0, 0.0, 0.0])
     state = State(y, k, clock, numbers, counts)
     budget, status = max(200_000 // y.size, 16), RUNNING  # some tens of milliseconds between two interrupts
     run: Any = march
+    span = max(float(samples[-1]) - start, 1e-300)
+    pace = Pace(span, most)
     while status == RUNNING:
         status = run(accelerate, model, tableau, n, state, samples, kept, budget)
-        progress((float(clock[TIME]) - start) / max(float(samples[-1]) - start, 1e-300))
+        progress(share := (float(clock[TIME]) - start) / span)
+        pace.check(int(counts[EVALUATIONS]) // len(tableau.c), share)
     end, last = clock.tolist()
     return Marched(kept[: counts[KEPT]], status, end, last, counts, float(numbers[FURTHEST]))

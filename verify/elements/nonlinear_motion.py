@@ -2,8 +2,9 @@
 
 J. Chung and G. M. Hulbert, J. Appl. Mech. 60 (1993) 371: order 2, unconditionally stable for linear problems; `RHO` is
 the factor by which a step multiplies the fastest modes. Those are axial and short bending modes, which no step for the
-motion resolves; slow modes lose 0.0007 (omega h)^3 of their amplitude per radian, and the energy balance says what was
-lost. The base moves as prescribed; in its frame that is inertia: Coriolis, centrifugal, Euler, translation.
+motion resolves; slow modes lose 0.0007 (omega h)^3 of their amplitude per radian (`linear.step_schemes`), and the
+energy balance says what was lost. The base moves as prescribed; in its frame that is inertia: Coriolis, centrifugal,
+Euler, translation.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,14 +18,14 @@ from verify.arrays import Array, ComplexArray
 from verify.elements.nonlinear import NonlinearHermite
 from verify.elements.plane_elements import NONE, QUARTER, Forces
 from verify.errors import InputError, shown
+from verify.linear.step_schemes import alphas
 from verify.problem.base_motion import FIXED, Base
 from verify.problem.beam import PointForce
+from verify.timing import Pace
 from verify.validation import check_number
 
 RHO = 0.8  # spectral radius at infinite frequency: 15 steps leave a thirtieth of the fastest modes
-ALPHA_M, ALPHA_F = (2.0 * RHO - 1.0) / (RHO + 1.0), RHO / (RHO + 1.0)
-GAMMA = 0.5 - ALPHA_M + ALPHA_F
-BETA = 0.25 * (1.0 - ALPHA_M + ALPHA_F) ** 2
+ALPHA_M, ALPHA_F, GAMMA, BETA = alphas(RHO)
 ERROR = abs(BETA - 1.0 / 6.0)
 """Of the third derivative times h^3 in a step of Newmark's method (O. C. Zienkiewicz and Y. M. Xie, Earthquake Eng.
 Struct. Dyn. 20 (1991) 871). An upper bound: that of generalised-alpha is less by half of ALPHA_F - ALPHA_M, 0.086."""
@@ -62,7 +63,7 @@ class NonlinearMotion:
 
     @property
     def energy_lost(self) -> float:
-        """Energy that the steps took, over the largest energy, with the error of the work's trapezoids; of any sign."""
+        """Energy that the steps took, over the largest energy, of any sign: that of unresolved axial waves is added."""
         kinetic, strain, work = self.energies
         return float((work - kinetic - strain)[-1] - (work - kinetic - strain)[0]) / float((kinetic + strain).max())
 
@@ -92,13 +93,14 @@ def large_motion(
     start_rate: Array | None = None,
     tolerance: float = 1e-7,
     progress: Callable[[float], None] = lambda share: None,
+    most_steps: float = np.inf,
 ) -> NonlinearMotion:
     """Motion from `start` (default: the unloaded beam) with rates `start_rate` (default: at rest relative to the base).
 
     `times` ascend from 0. `forces` are dead loads in the frame of the ground, which may depend on time, s; `drive` are
     harmonic forces across the straight beam, which turn with the base. `tolerance` bounds the error of a step in
     displacement over the length; that of the motion is larger by about the number of steps in a period. Raises
-    InputError where the step falls below a billionth of the duration.
+    InputError where the step falls below a billionth of the duration, and where more than `most_steps` are expected.
     """
     samples = np.atleast_1d(np.asarray(times, dtype=float))
     if samples[0] < 0.0 or not (np.diff(samples) > 0.0).all() or not samples[-1] > 0.0:
@@ -106,7 +108,7 @@ def large_motion(
     check_number("tolerance", tolerance, "of the length", above=0, at_most=1e-2)
     ground = forces if callable(forces) else (lambda time: forces)
     run = _Run(model, ground, model.across(drive), 2.0 * pi * frequency_hz, base, tolerance)
-    return run.march(samples, start, start_rate, progress)
+    return run.march(samples, start, start_rate, progress, Pace(float(samples[-1]), most_steps))
 
 
 class _Run:
@@ -181,7 +183,12 @@ class _Run:
         return None
 
     def march(
-        self, times: Array, start: Array | None, start_rate: Array | None, progress: Callable[[float], None]
+        self,
+        times: Array,
+        start: Array | None,
+        start_rate: Array | None,
+        progress: Callable[[float], None],
+        pace: Pace,
     ) -> NonlinearMotion:
         """Steps to the last time, interpolated to all."""
         model, end = self.model, float(times[-1])
@@ -194,10 +201,12 @@ class _Run:
             # the acceleration belongs to t + (ALPHA_M - ALPHA_F) times the step before: move it to where this one does
             moved = replace(now, acceleration=now.acceleration + (ALPHA_M - ALPHA_F) * (h - placed) * jerk)
             new, error = self.step(moved, h, jerk) or (None, 8.0)  # without convergence half the step
+            pace.check(len(instants) + rejected, now.time / end)
             if new is None or error > 1.0:
                 rejected, h = rejected + 1, h * max(SAFETY * error ** (-1 / 3), SHRINK)
                 if h < LEAST * end:
-                    raise InputError(f"tolerance = {self.tolerance!r}: no step converges at {now.time:g} s, change it")
+                    text = f"tolerance = {self.tolerance!r}: no step converges at {now.time:g} s, "
+                    raise InputError(f"{text}give another, more elements or a slower motion")
                 continue
             now, jerk, placed = new, (new.acceleration - moved.acceleration) / h, h
             factor = min(SAFETY * max(error, 1e-9) ** (-1 / 3), GROWTH)
@@ -220,8 +229,9 @@ class _Run:
         )
         moving = rates.reshape(len(at), -1)[:, self.model.values]
         kinetic = 0.5 * np.einsum("tni,nij,tnj->t", moving, self.mass, moving)
-        power = np.array([self.external(now.time, now.state, now.rate)[0] @ now.rate.ravel() for now in instants])
-        work = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(at) * (power[1:] + power[:-1]))])
+        forces = np.array([self.external(now.time, now.state, now.rate)[0] for now in instants])
+        shares = 0.5 * (forces[1:] + forces[:-1]) * np.diff(states.reshape(len(at), -1), axis=0)
+        work = np.concatenate([[0.0], np.cumsum(shares.sum(axis=1))])  # exact for constant and for centrifugal forces
         return NonlinearMotion(
             model=self.model,
             times=times,

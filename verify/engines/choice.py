@@ -16,10 +16,11 @@ from verify.analysis.verdict import per_cent
 from verify.arrays import Array
 from verify.blas import one_blas_thread
 from verify.engines.description import Axis, Joint, RigidChain, Steps
-from verify.engines.integrators import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme, scheme_of
+from verify.engines.integrators import scheme_of
 from verify.engines.steps import Simulated, simulated_chain
 from verify.errors import InputError
 from verify.formatting import floored, with_unit
+from verify.linear.step_schemes import EXPLICIT_DASHPOTS, IMPLICIT_DASHPOTS, Scheme
 
 MARGIN = 0.9
 """Largest fraction of the stability limit: at the limit a motion does not decay."""

@@ -10,9 +10,10 @@ import numpy as np
 from verify.analysis.verdict import per_cent
 from verify.engines.choice import Rayleigh, band, compensated, rayleigh
 from verify.engines.description import Axis, RigidChain, Steps, with_dashpots
-from verify.engines.integrators import TRAPEZOIDAL, scheme_of
+from verify.engines.integrators import scheme_of
 from verify.engines.steps import simulated_chain
 from verify.errors import InputError, shown
+from verify.linear.step_schemes import TRAPEZOIDAL
 from verify.validation import check_number
 
 EXAMPLES = "1%, '1% at 2', '1% 2% at 1,3', '1% 0.8% at 6.9,43 Hz' or '2% 5-50Hz'"

@@ -4,7 +4,6 @@ Small vibration about rest, without equalities and contacts. In MuJoCo an equali
 implicit steps: with a supported far end damped figures are approximate.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, pi
@@ -15,8 +14,8 @@ import numpy as np
 from verify.arrays import Array, BoolArray, ComplexArray, Indices
 from verify.blas import one_blas_thread
 from verify.engines.description import Axis, RigidChain
-from verify.engines.integrators import REAL, Scheme
 from verify.errors import InputError
+from verify.linear.step_schemes import REAL, Scheme
 from verify.validation import check_integer, check_number
 
 UNCOUPLED = 1e-9
@@ -56,8 +55,8 @@ class Modes(NamedTuple):
 class Simulated:
     """M, C, K (n, n) of a chain about rest, with joint armature in M, in steps h (s) of a scheme.
 
-    Modes ascend by undamped frequency. `axes`: label of every unknown, say "bending"; `constraints`: rows (m, n) that
-    are zero. Raises InputError for a mass or stiffness matrix that is not positive, up to rigid motions.
+    Modes ascend by undamped frequency. `constraints`: rows (m, n) that are zero. Raises InputError
+    for a mass or stiffness matrix that is not positive, up to rigid motions.
     """
 
     mass: Array
@@ -65,7 +64,6 @@ class Simulated:
     stiffness: Array
     step: float
     scheme: Scheme
-    axes: Sequence[str] = ()
     constraints: Array | None = None
 
     def __post_init__(self) -> None:
@@ -187,16 +185,15 @@ class Simulated:
 
     @cached_property
     @one_blas_thread()
-    def _limit(self) -> tuple[float, Array]:
-        """(largest stable step, s, shape over the unknowns of the motion that grows first)."""
+    def limit(self) -> float:
+        """Largest stable step, s; inf of an implicit scheme, 0 of one that every undamped mode makes grow."""
         from scipy.linalg import eigh
 
-        omega, damping, shapes = self.modal
+        omega, damping, _ = self.modal
         if self.scheme.limit == inf:
-            return inf, shapes[:, -1]
+            return inf
         if self.scheme.state:
-            step, pole = _reach(self.scheme, self.poles.s)
-            return step, shapes[:, int(self.poles.mode[pole])]
+            return _reach(self.scheme, self.poles.s)
         # a scheme of three instants leaves the circle at lambda = -1: the largest 1/h of a hyperbolic problem
         m, c, k = self.scheme.at(-2.0)
         shape, value = np.eye(len(omega))[-1], 0.0
@@ -207,12 +204,7 @@ class Simulated:
                 break
             matrix = np.diag(m * value**2 + k * omega**2) + c * value * damping
             shape = eigh(matrix, subset_by_index=[0, 0])[1][:, 0]
-        return 1.0 / value, shapes @ shape
-
-    @property
-    def limit(self) -> float:
-        """Largest stable step, s; inf of an implicit scheme, 0 of one that every undamped mode makes grow."""
-        return self._limit[0]
+        return 1.0 / value
 
     @property
     def stable(self) -> bool:
@@ -223,15 +215,6 @@ class Simulated:
     def substeps(self) -> int:
         """Least number of equal parts of the step that are stable; 0: no number is."""
         return max(ceil(self.step / self.limit), 1) if self.limit else 0
-
-    @property
-    def limiting(self) -> dict[str, float]:
-        """Shares of elastic energy by label in `axes`, largest first: of what grows first, else of the highest mode."""
-        shape = self._limit[1]
-        energy = shape * (self.stiffness @ shape) / (shape @ self.stiffness @ shape)
-        labels = np.array(self.axes if len(self.axes) else [str(i) for i in range(len(energy))])
-        shares = {str(one): float(energy[labels == one].sum()) for one in np.unique(labels)}
-        return dict(sorted(shares.items(), key=lambda each: -each[1]))
 
     def step_for(self, mode: int, within: float, *, damping: bool = False) -> float:
         """Largest step, s, up to which |f/f of the file - 1| of a mode, or |zeta - zeta of the file|, is `within`.
@@ -276,8 +259,8 @@ def _ratio(s: ComplexArray) -> Array:
     return np.asarray(-s.real / np.where(s == 0.0, 1.0, abs(s)))
 
 
-def _reach(scheme: Scheme, s: ComplexArray) -> tuple[float, int]:
-    """(largest step at which no pole s grows by an explicit scheme, index of the one that grows beyond)."""
+def _reach(scheme: Scheme, s: ComplexArray) -> float:
+    """Largest step at which no pole s grows by an explicit scheme."""
     size = float(abs(s).max())
     # decay below rounding is none: it would hide, or feign, a slow growth
     unit = np.where(abs(s.real) < REAL * abs(s), 0.0, s.real / size) + 1j * s.imag / size
@@ -293,14 +276,14 @@ def _reach(scheme: Scheme, s: ComplexArray) -> tuple[float, int]:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if grows(middle).any() else (middle, high)
     # at |z| = 2e-3 a scheme that makes undamped modes grow does it by less than GROWTH
-    return (low / size if low > 2e-3 else 0.0), int(grows(high).argmax())
+    return low / size if low > 2e-3 else 0.0
 
 
 def simulated_chain(chain: RigidChain, step: float, scheme: Scheme, axis: Axis | None = None) -> Simulated:
     """A chain in the steps of a scheme, with armature and drag, about all axes of its hinges or one."""
     from scipy.linalg import block_diag
 
-    axes, damping, labels = chain.motions if axis is None else (axis,), list[Array](), list[str]()
+    axes, damping = chain.motions if axis is None else (axis,), list[Array]()
     mass, stiffness = (list(each) for each in zip(*map(chain.matrices, axes), strict=True))
     for i, about in enumerate(axes):
         unknowns = chain.unknowns(about)
@@ -312,6 +295,5 @@ def simulated_chain(chain: RigidChain, step: float, scheme: Scheme, axis: Axis |
             damping[-1] += dashpot * np.outer(weights, weights)
         if chain.viscosity:
             damping[-1] += chain.drag(about)
-        labels += [turn or about for turn in turns]
     constraints = block_diag(*map(chain.constraints, axes))
-    return Simulated(block_diag(*mass), block_diag(*damping), block_diag(*stiffness), step, scheme, labels, constraints)
+    return Simulated(block_diag(*mass), block_diag(*damping), block_diag(*stiffness), step, scheme, constraints)

@@ -3,8 +3,10 @@
 Both models are planar and undamped, without shear and rotary inertia of the section; links do not stretch.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import hypot, pi
+from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
@@ -30,6 +32,9 @@ if TYPE_CHECKING:
 STIFF = 1e8  # EA over EI/L^2 of elements whose EA is unknown: rounding leaves eight digits of bending
 COUNTS = {"segment": 20, "fem": 8}
 """Numbers within 0.1 % of the tip's path of a spin-up over ten periods (docs/findings/large-motion.md)."""
+MOST_STEPS = {"segment": 1e7, "fem": 1e6}
+"""Time steps at which a run is refused: minutes of 20 links; of 8 elements twenty minutes, and 1 GB of states."""
+TOLD = 2.0  # s of a run after which the time that it takes on is told
 Model = Annotated[Literal["segment", "fem"], Meta(description="segment: rigid links; fem: nonlinear elements")]
 AxialStiffness = Annotated[
     float, unit("N"), Meta(gt=0, description="EA of elements, N; default: the section's, 1e8 EI/L^2 where unknown")
@@ -48,6 +53,10 @@ class TipPath:
     """(n, points, 2), m: joints of links or nodes of elements, the tip last."""
     root_moments: Array
     """(n,), N m: bending moment at the base."""
+    step: float
+    """Mean time step, s."""
+    energy_lost: float = 0.0
+    """By the steps of elements, over the largest energy; of any sign."""
 
     @property
     def tip(self) -> Array:
@@ -93,13 +102,18 @@ class Path(msgspec.Struct, frozen=True, kw_only=True):
 
 def path_of(scene: Scene, cache: "SolutionCache", path: Path) -> TipPath:
     """The motion on the scene's base from the straight beam that moves with it. Raises InputError."""
+    return told_path(scene, cache, path, lambda left: None)
+
+
+def told_path(scene: Scene, cache: "SolutionCache", path: Path, progress: Callable[[str], object]) -> TipPath:
+    """That of `path_of`; `progress` is called with the time that a run of more than `TOLD` seconds takes on."""
     if scene.base is None:
         raise InputError("base is missing: add [base] with a duration and a rotation, x or y")
     key = ("blade", scene.base, path)
     if key not in cache.motors:
         times, count = np.linspace(0.0, scene.base.duration, path.samples), path.count or COUNTS[path.model]
         run = _of_links if path.model == "segment" else _of_elements
-        cache.motors[key] = run(scene.beam, scene.base, path, count, times)
+        cache.motors[key] = run(scene.beam, scene.base, path, count, times, _left(progress))
     stored: TipPath = cache.motors[key]
     return stored
 
@@ -122,7 +136,22 @@ def links(beam: Beam, count: int, joints: settings.Joints, **motion: Any) -> "Ch
     return tensioned(system) if joints == "tensioned" else system
 
 
-def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
+def _left(progress: Callable[[str], object]) -> Callable[[float], None]:
+    """Of the share of a run that is done: tell once the time that the rest takes at the pace of the first steps."""
+    began, told = perf_counter(), False
+
+    def done(share: float) -> None:
+        nonlocal told
+        if not told and share > 0.0 and (passed := perf_counter() - began) > TOLD:
+            told = True
+            progress(f"about {passed * (1.0 / share - 1.0):.2g} s left")
+
+    return done
+
+
+def _of_elements(
+    beam: Beam, base: "MovingBase", path: Path, count: int, times: Array, done: Callable[[float], None]
+) -> TipPath:
     from verify.elements.nonlinear_motion import large_motion
     from verify.elements.plane_elements import Forces
 
@@ -130,23 +159,43 @@ def _of_elements(beam: Beam, base: "MovingBase", path: Path, count: int, times: 
     rate, start = base.motion.rotation(0.0)[1], model.rest
     if rate and beam.supports[0] == "clamped":  # else the beam rings along its length
         start = model.bend(rate=rate, hub_radius=base.hub_radius).state
-    run = large_motion(model, times, forces=weight, base=base.motion, start=start, tolerance=path.tolerance)
+    run = large_motion(
+        model,
+        times,
+        forces=weight,
+        base=base.motion,
+        start=start,
+        tolerance=path.tolerance,
+        progress=done,
+        most_steps=MOST_STEPS[path.model],
+    )
     (r0, a0), (r1, a1) = np.moveaxis(run.states[:, :2], 0, -2)
     size = float(model.nodes[1])
     bend = 6.0 * (r1 - r0) / size**2 - (4.0 * a0 + 2.0 * a1) / size  # r'' of the cubic at its left end
     curvature = (a0[:, 0] * bend[:, 1] - a0[:, 1] * bend[:, 0]) / (a0 * a0).sum(axis=1)
     stiffness = beam.pieces[0].bending_stiffness * (beam.supports[0] == "clamped")
-    return TipPath(times=times, line=run.states[:, :, 0], root_moments=stiffness * curvature)
+    return TipPath(
+        times=times,
+        line=run.states[:, :, 0],
+        root_moments=stiffness * curvature,
+        step=base.duration / run.steps,
+        energy_lost=run.energy_lost,
+    )
 
 
-def _of_links(beam: Beam, base: "MovingBase", path: Path, count: int, times: Array) -> TipPath:
+def _of_links(
+    beam: Beam, base: "MovingBase", path: Path, count: int, times: Array, done: Callable[[float], None]
+) -> TipPath:
     from verify.chain.kinematics import at_rest
     from verify.chain.motion import check_moved, simulate
 
     system = links(beam, count, path.joints, base=base.motion, gravity=base.gravity)
-    run = simulate(system, at_rest(system), times, tolerance=path.tolerance)
+    run = simulate(
+        system, at_rest(system), times, tolerance=path.tolerance, progress=done, most_steps=MOST_STEPS[path.model]
+    )
     check_moved(run)
-    return TipPath(times=times, line=run.in_base(), root_moments=run.root_moments())
+    step = base.duration / run.statistics.steps
+    return TipPath(times=times, line=run.in_base(), root_moments=run.root_moments(), step=step)
 
 
 blade = figures("blade", path_of, reads=("beam", "base"))
