@@ -6,6 +6,7 @@ squares fit over all samples; modes are added while they lower Schwarz's criteri
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import hypot, log, pi, sqrt
 
@@ -26,6 +27,10 @@ GAIN = 10.0
 """Least fall of Schwarz's criterion by a mode: odds of 150 to 1."""
 FEWEST = 16
 """Samples of the shortest record."""
+GROWTH = 100.0
+"""Exponent of a growth that the least squares may try: e^100 squared is still a number."""
+RELEASE, CLEARER = 0.98, 0.5
+"""Deflection of a beam that is released, over the largest of the record; noise without what is before, over all."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,8 @@ class RingDown:
     modes: tuple[RingMode, ...]
     noise: float
     white: bool
+    start: float = 0.0
+    """Time of the first sample that the fit uses, s."""
 
     @property
     def hertz(self) -> Array:
@@ -68,7 +75,8 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     """Modes of a free vibration sampled at `times` (n,), s, in `signals` (n,) or (n, channels).
 
     `n_modes`: default those that the record tells from its noise. Raises InputError for fewer than 16 samples, times
-    that do not ascend, values that are not finite, and a record in which nothing rings.
+    that do not ascend, values that are not finite, and a record in which nothing rings. Rest or the rise of a load
+    before the vibration is left out where the residuals show it.
     """
     t, y = np.asarray(times, dtype=float), np.asarray(signals, dtype=float)
     y = y.reshape(len(y), -1)
@@ -78,6 +86,34 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
         raise InputError("record: give finite values at ascending times")
     if n_modes is not None:
         check_integer("n_modes", n_modes, 1, MOST_MODES)
+    if not np.ptp(y, axis=0).any():
+        raise InputError("record: its signals are constant, nothing rings")
+    whole: RingDown | InputError
+    try:
+        whole = _ring(t, y, n_modes)
+        if whole.white:
+            return whole
+    except InputError as error:
+        whole = error
+    if FEWEST <= len(t) - (first := _release(y)) < len(t):
+        with suppress(InputError):
+            later = _ring(t[first:], y[first:], n_modes)
+            if isinstance(whole, InputError) or later.white or later.noise < CLEARER * whole.noise:
+                return later
+    if isinstance(whole, InputError):
+        raise whole
+    return whole
+
+
+def _release(y: Array) -> int:
+    """The last sample that is about as far from the end's mean as the farthest: a release, or later in free decay."""
+    away = abs(y - y[-max(len(y) // 4, 1) :].mean(axis=0)) / np.maximum(np.ptp(y, axis=0), 1e-300)
+    most = away.max(axis=1)
+    return int(np.flatnonzero(most >= RELEASE * most.max())[-1])
+
+
+def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:
+    """Modes of signals (n, channels). Raises InputError where nothing rings."""
     scale = np.ptp(y, axis=0)
     if not scale.any():
         raise InputError("record: its signals are constant, nothing rings")
@@ -109,7 +145,7 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
             scale[channel] * hypot(value[f"c{c},{i}"], value[f"c{c},{count + i}"]) for i in range(count)
         ]
     modes = _modes(fitted, float(t[-1] - origin), sizes)
-    return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected)
+    return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected, float(origin))
 
 
 def _pencil(t: Array, y: Array) -> ComplexArray:
@@ -159,7 +195,8 @@ def _strongest(t: Array, y: Array, poles: ComplexArray) -> ComplexArray:
 
 def _basis(t: Array, poles: ComplexArray) -> Array:
     """Decaying cosines and sines of the poles, 1 and t, (n, 2 m + 2)."""
-    waves = np.exp(np.outer(t, poles))
+    powers = np.outer(t, poles)
+    waves = np.exp(np.minimum(powers.real, GROWTH) + 1j * powers.imag)
     return np.concatenate([waves.real, waves.imag, np.ones((len(t), 1)), t[:, None] / t[-1]], axis=1)
 
 
