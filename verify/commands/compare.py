@@ -68,7 +68,8 @@ def compare(
 
     FILE may be a record of free vibration: a table with a time column, then signals.
 
-    FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md).
+    FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md), and a
+    record of its run may follow: `verify compare my.xml ring.csv`.
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """

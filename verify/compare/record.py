@@ -87,7 +87,7 @@ def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record
         k, remedy = int(back[0]) + 1, "give ascending times, of one run alone"
         raise InputError(f"{source}, row {place[k] + 1}: time {times[k]:.9g} after {times[k - 1]:.9g}: {remedy}")
     even, digit = np.polynomial.Polynomial.fit(place, times, 1)(place), _last_digit(times)
-    if 0.0 < abs(even - times).max() <= ROUNDED * digit:
+    if 1e-6 * digit < abs(even - times).max() <= ROUNDED * digit:
         times, notes = even, [*notes, f"Times are those of the even spacing that the file rounds to {digit:g}."]
     return Record(unit * times, table[:, 1:], names, tuple(notes))
 

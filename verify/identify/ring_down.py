@@ -29,6 +29,8 @@ FEWEST = 16
 """Samples of the shortest record."""
 GROWTH = 100.0
 """Exponent of a growth that the least squares may try: e^100 squared is still a number."""
+GRAIN = 1e-8
+"""Amplitude of a mode over the largest of its channel, below which it is one of rounding."""
 RELEASE, CLEARER = 0.98, 0.5
 """Deflection of a beam that is released, over the largest of the record; noise without what is before, over all."""
 
@@ -230,9 +232,9 @@ def _fit(t: Array, y: Array, poles: ComplexArray) -> Fit:
 
 
 def _modes(fitted: Fit, duration: float, sizes: Array) -> tuple[RingMode, ...]:
-    """Modes of a fit by frequency, with their amplitudes `sizes`, (modes, channels)."""
-    modes = []
-    for i, size in enumerate(sizes.tolist()):
+    """Modes of a fit above rounding by frequency, with their amplitudes `sizes`, (modes, channels)."""
+    modes, loud = [], (sizes > GRAIN * sizes.max(axis=0)).any(axis=1)
+    for i, size in ((i, sizes[i].tolist()) for i in np.flatnonzero(loud).tolist()):
         turns, ratio = fitted.estimates[f"d{i}"], fitted.estimates[f"r{i}"]
         hertz, low, high = (edge / (2.0 * pi * duration) for edge in (turns.value, *turns.interval))
         zeta, most, least = (-r / sqrt(1.0 + r * r) for r in (ratio.value, *ratio.interval))
