@@ -25,6 +25,7 @@ COMMANDS = {
     "chain": "Joints and links as rigid bodies for MuJoCo, Gazebo, Drake.",
     "sweep": "Evaluate quantities over lists of values.",
     "compare": "Identify the discretisation behind natural frequencies.",
+    "identify": "Stiffness, clamp and damping of a strip from records.",
     "bench": "Measure run time over error of all methods.",
     "stress": "Run the numerical stress checks.",
     "export": "Write modes, the driven wave or the motion to a file.",

@@ -30,7 +30,7 @@ def with_run(result: Result, path: Path, within: float) -> Result:
     ring = ring_down(record.times, record.signals)
     pairs = _pairs(ring.modes, modes)
     rows = [_row(entry, mode, one) for entry, (mode, one) in enumerate(pairs, start=1)]
-    columns = [Column("entry"), Column("axis"), Column("mode"), Column("measured", "Hz", ".6g")]
+    columns = [Column("entry"), Column("mode"), Column("measured", "Hz", ".6g")]
     columns += [Column("± (95 %)", "Hz", ".2g"), Column("simulated", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
     columns += [Column("off", percent=True, format="+.2g"), Column("damping", percent=True, format=".4g")]
     columns += [Column("± (95 %) of it", percent=True, format=".2g")]
@@ -76,10 +76,11 @@ def _row(entry: int, mode: RingMode, one: dict[str, Any] | None) -> tuple[object
     """A row of the table."""
     halves = [0.5 * (high - low) for low, high in (mode.hz_interval, mode.zeta_interval)]
     if one is None:
-        return entry, None, None, mode.hz, halves[0], None, None, None, mode.zeta, halves[1], None, None, None
+        return entry, None, mode.hz, halves[0], None, None, None, mode.zeta, halves[1], None, None, None
     hz, zeta, after = (one[key] for key in ("simulated_hz", "damping", "simulated_damping"))
     run = (hz, one["meant_hz"], mode.hz / hz - 1.0)
-    return entry, one["axis"], one["mode"], mode.hz, halves[0], *run, mode.zeta, halves[1], after, zeta, after - zeta
+    name = f"{one['mode']} in {one['axis']}"
+    return entry, name, mode.hz, halves[0], *run, mode.zeta, halves[1], after, zeta, after - zeta
 
 
 def _beyond(value: float, interval: tuple[float, float], expected: float) -> float:
