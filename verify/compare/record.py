@@ -25,6 +25,8 @@ EMPTY = re.compile(r"(?<=[,;\t])[ ]*(?=[,;\t]|$)")
 """A cell without a value in a row of numbers."""
 DIGITS, ROUNDED = 10, 0.75
 """Decimals of a time that may be rounded; deviation from even spacing, over its last digit, by half a digit and fit."""
+STEADY = 1e-4
+"""Damping ratio below which a single mode may be driven."""
 ALIASES, NEAR = 12, 0.01
 """Modes of the beam that may be sampled too slowly, and the relative error of their frequency in a record."""
 
@@ -128,6 +130,8 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
     if not ring.white:
         warnings.append("the residuals of the record are not white: more modes or nonlinear, its intervals too short")
+    if len(ring.modes) == 1 and abs(ring.modes[0].zeta) < STEADY:
+        warnings.append(f"a vibration that does not decay: compare a steady one by --drive {ring.modes[0].hz:.4g}Hz")
     modes = [mode.__dict__ | {"undamped_hz": mode.undamped_hz} for mode in ring.modes]
     tables = [*result.tables, Table("Modes of the record", columns, rows, notes)]
     return replace(result, tables=tables, warnings=warnings, data=dict(result.data) | {"record": modes})
