@@ -31,12 +31,12 @@ def with_run(result: Result, path: Path, within: float) -> Result:
     pairs = _pairs(ring.modes, modes)
     rows = [_row(entry, mode, one) for entry, (mode, one) in enumerate(pairs, start=1)]
     columns = [Column("entry"), Column("mode"), Column("measured", "Hz", ".6g")]
-    columns += [Column("± (95 %)", "Hz", ".2g"), Column("simulated", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
+    columns += [Column("±", "Hz", ".2g"), Column("as it runs", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
     columns += [Column("off", percent=True, format="+.2g"), Column("damping", percent=True, format=".4g")]
-    columns += [Column("± (95 %) of it", percent=True, format=".2g")]
-    columns += [Column(name, percent=True, format=".3g") for name in ("simulated damping", "in the file", "added")]
+    columns += [Column("±", percent=True, format=".2g")]
+    columns += [Column(name, percent=True, format=".3g") for name in ("as it runs", "added")]
     margin, text = _verdict(pairs, within)
-    notes = ["Damped frequencies; added: damping by the integrator.", *record.notes]
+    notes = ["Damped frequencies with 95 % intervals; added: damping by the integrator.", *record.notes]
     if beyond := [one.hz for one, match in pairs if not match and one.hz > max(m["simulated_hz"] for m in modes)]:
         notes.append(f"Above the modes of the file that are compared: {', '.join(map(three_digits, beyond))} Hz.")
     warnings = [*result.warnings]
@@ -76,11 +76,11 @@ def _row(entry: int, mode: RingMode, one: dict[str, Any] | None) -> tuple[object
     """A row of the table."""
     halves = [0.5 * (high - low) for low, high in (mode.hz_interval, mode.zeta_interval)]
     if one is None:
-        return entry, None, mode.hz, halves[0], None, None, None, mode.zeta, halves[1], None, None, None
+        return entry, None, mode.hz, halves[0], None, None, None, mode.zeta, halves[1], None, None
     hz, zeta, after = (one[key] for key in ("simulated_hz", "damping", "simulated_damping"))
     run = (hz, one["meant_hz"], mode.hz / hz - 1.0)
-    name = f"{one['mode']} in {one['axis']}"
-    return entry, name, mode.hz, halves[0], *run, mode.zeta, halves[1], after, zeta, after - zeta
+    name = one["mode"] if one["axis"] == "bending" else f"{one['mode']} in {one['axis']}"
+    return entry, name, mode.hz, halves[0], *run, mode.zeta, halves[1], after, after - zeta
 
 
 def _beyond(value: float, interval: tuple[float, float], expected: float) -> float:

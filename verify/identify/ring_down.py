@@ -31,8 +31,9 @@ GROWTH = 100.0
 """Exponent of a growth that the least squares may try: e^100 squared is still a number."""
 GRAIN = 1e-8
 """Amplitude of a mode over the largest of its channel, below which it is one of rounding."""
-RELEASE, CLEARER = 0.98, 0.5
-"""Deflection of a beam that is released, over the largest of the record; noise without what is before, over all."""
+RELEASE, SWING, CLEARER, BRIEF = 0.9, 0.3, 0.5, 0.2
+"""Deflection of a beam that is released, over the largest before it swings back by SWING of the largest of all; noise
+without what is before, over that of all; damping ratio of modes that may mimic a load."""
 
 
 @dataclass(frozen=True)
@@ -93,14 +94,17 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     whole: RingDown | InputError
     try:
         whole = _ring(t, y, n_modes)
-        if whole.white:
+        if whole.white and all(abs(mode.zeta) < BRIEF for mode in whole.modes):
             return whole
     except InputError as error:
         whole = error
     if FEWEST <= len(t) - (first := _release(y)) < len(t):
         with suppress(InputError):
             later = _ring(t[first:], y[first:], n_modes)
-            if isinstance(whole, InputError) or later.white or later.noise < CLEARER * whole.noise:
+            if isinstance(whole, InputError):
+                return later
+            clearer = later.white or later.noise < CLEARER * whole.noise
+            if clearer and (not whole.white or len(later.modes) < len(whole.modes)):
                 return later
     if isinstance(whole, InputError):
         raise whole
@@ -108,10 +112,14 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
 
 
 def _release(y: Array) -> int:
-    """The last sample that is about as far from the end's mean as the farthest: a release, or later in free decay."""
-    away = abs(y - y[-max(len(y) // 4, 1) :].mean(axis=0)) / np.maximum(np.ptp(y, axis=0), 1e-300)
-    most = away.max(axis=1)
-    return int(np.flatnonzero(most >= RELEASE * most.max())[-1])
+    """The last sample of signals (n, channels) near the peak of the first excursion to one side of the end's mean."""
+    away = (y - y[-max(len(y) // 4, 1) :].mean(axis=0)) / np.maximum(np.ptp(y, axis=0), 1e-300)
+    size = away[:, np.unravel_index(abs(away).argmax(), away.shape)[1]]
+    swings = np.sign(size) * (abs(size) > SWING * abs(size).max())
+    first = swings[np.flatnonzero(swings)[0]]
+    back = np.flatnonzero(swings == -first)
+    lobe = first * size[: back[0] if len(back) else len(size)]
+    return int(np.flatnonzero(lobe >= RELEASE * lobe.max())[-1])
 
 
 def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:

@@ -17,7 +17,7 @@ from verify.arrays import Array
 from verify.errors import InputError
 from verify.identify.beam import WALLS, frequencies, varied
 from verify.identify.fit import REJECTED, Estimate, Fit, Model, Parameter, fit
-from verify.identify.ring_down import RingDown, RingMode
+from verify.identify.ring_down import BRIEF, RingDown, RingMode
 from verify.problem.beam import Beam, check_features
 
 STIFFNESS, COMPLIANCE = "bending stiffness", "compliance of the clamp"
@@ -101,14 +101,19 @@ def _sd(interval: tuple[float, float]) -> float:
 
 def _fit(model: Model, data: Array, names: list[str], start: dict[str, float] | None = None) -> Fit:
     """With the noise of the records, or of the residuals where these are larger."""
-    fitted = fit(model, data, names, start=start or {}, noise=1.0, profiles=False)
+    try:
+        fitted = fit(model, data, names, start=start or {}, noise=1.0, profiles=False)
+    except InputError:
+        text = "no strip has the frequencies of these modes, check lengths, section and the signals"
+        raise InputError(f"records: {text}") from None
     larger = fitted.fitness is not None and fitted.fitness < REJECTED
     return fit(model, data, names, start=start or {}, profiles=False) if larger else fitted
 
 
 def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tuple[int, int, RingMode]], list[float]]:
     """(record, mode number, mode) of the frequencies that are of modes with one common factor, and the others, Hz."""
-    used, left_out = [list(ring.modes) for ring in rings], list[float]()
+    used = [[one for one in ring.modes if abs(one.zeta) < BRIEF] for ring in rings]
+    left_out = [one.hz for ring in rings for one in ring.modes if abs(one.zeta) >= BRIEF]
     longest = max(beam.length for beam in beams)
     while True:
         count = max(len(modes) for modes in used) + SPARE
