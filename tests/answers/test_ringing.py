@@ -65,7 +65,7 @@ def test_the_first_sentence_names_the_deviation(chain, capsys):
     assert status == 1
     assert said.startswith("Not to be trusted: the record disagrees with the file as it runs: mode ")
     assert "3.8 % low" in said  # 1/sqrt(1.08) - 1 = -3.77 %
-    assert "stiffness over mass is 0.9259 times that of the file" in said  # 1/1.08
+    assert "stiffness over mass is 0.9259 times the file's" in said  # 1/1.08
     chain.write_text(text)
     status, said = compared(capsys, "--engine", "MuJoCo:discrete", "--step", "0.4ms")
     assert status == 1

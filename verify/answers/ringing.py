@@ -1,12 +1,13 @@
 """A record of free vibration beside the chain of rigid bodies whose run it is: measured, simulated, in the file."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import hypot, isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from verify.analysis.verdict import Margin, per_cent, three_digits, void
-from verify.compare.record import read_record
+from verify.compare.record import COLOURED, need_record
 from verify.errors import InputError
 from verify.identify.ring_down import RingMode, ring_down
 from verify.report.result import Column, Result, Table
@@ -17,37 +18,65 @@ COMMON = 0.1
 """Spread of the frequency ratios over their distance from 1 up to which one factor explains them."""
 
 
+class Pair(NamedTuple):
+    """A mode of a record and that of the run (`data["run"]["modes"]`) which it is."""
+
+    mode: RingMode
+    run: dict[str, Any]
+
+    @property
+    def off(self) -> float:
+        """Relative difference of the frequencies, measured less simulated."""
+        return self.mode.hz / float(self.run["simulated_hz"]) - 1.0
+
+    @property
+    def more(self) -> float:
+        """Difference of the damping ratios."""
+        return self.mode.zeta - float(self.run["simulated_damping"])
+
+    @property
+    def size(self) -> float:
+        """Both differences beyond the intervals of the record."""
+        hz, zeta = self.mode.halves
+        return hypot(max(abs(self.off) - hz / self.mode.hz, 0.0), max(abs(self.more) - zeta, 0.0))
+
+
 def with_run(result: Result, path: Path, within: float) -> Result:
     """The judgement of a chain's file (`judge_file`) with a record of its run beside the modes as it runs.
 
     `data["record"]` has the pairs, and `data["passed"]` requires that they are `within` each other, relative in
     frequency and in points of damping, beyond the intervals of the record. Raises InputError.
     """
-    if (record := read_record(path)) is None:
-        raise InputError(f"file {str(path)!r} is no record: give 16 rows or more of a time 't' and signals")
+    record = need_record(path)
     if not (modes := result.data["run"].get("modes")):
         raise InputError(f"file {str(path)!r}: a record is compared with a run, give --engine and --step")
     ring = ring_down(record.times, record.signals)
     pairs = _pairs(ring.modes, modes)
-    rows = [_row(entry, mode, one) for entry, (mode, one) in enumerate(pairs, start=1)]
-    columns = [Column("entry"), Column("mode"), Column("measured", "Hz", ".6g")]
-    columns += [Column("±", "Hz", ".2g"), Column("as it runs", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
-    columns += [Column("off", percent=True, format="+.2g"), Column("damping", percent=True, format=".4g")]
-    columns += [Column("±", percent=True, format=".2g")]
-    columns += [Column(name, percent=True, format=".3g") for name in ("as it runs", "added")]
-    margin, text = _verdict(pairs, within)
+    columns = [Column("entry"), Column("mode"), Column("measured", "Hz", ".6g"), Column("±", "Hz", ".2g")]
+    columns += [Column("as it runs", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
+    formats = {"off": "+.2g", "damping": ".4g", "±": ".2g", "as it runs": ".3g", "added": ".3g"}
+    columns += [Column(name, percent=True, format=form) for name, form in formats.items()]
+    rows = list[tuple[object, ...]]()
+    for entry, mode in enumerate(ring.modes, start=1):
+        one, (hz, zeta) = pairs.get(mode), mode.halves
+        run = one.run if one else {}
+        name = run["mode"] if run.get("axis") == "bending" else f"{run['mode']} in {run['axis']}" if run else None
+        first = (entry, name, mode.hz, hz, run.get("simulated_hz"), run.get("meant_hz"), one and one.off)
+        rows.append((*first, mode.zeta, zeta, run.get("simulated_damping"), run.get("added")))
+    margin, text = _verdict(ring.modes, [*pairs.values()], within)
     notes = ["Damped frequencies with 95 % intervals; added: damping by the integrator.", *record.notes]
-    if beyond := [one.hz for one, match in pairs if not match and one.hz > max(m["simulated_hz"] for m in modes)]:
+    if beyond := [one.hz for one in ring.modes if one not in pairs and one.hz > max(m["simulated_hz"] for m in modes)]:
         notes.append(f"Above the modes of the file that are compared: {', '.join(map(three_digits, beyond))} Hz.")
-    warnings = [*result.warnings]
-    if not ring.white:
-        warnings.append("the residuals of the record are not white: more modes or nonlinear, its intervals too short")
-    found = [mode.__dict__ | {"run": one} for mode, one in pairs]
-    known = dict(result.data) | {"record": found, "passed": result.data["passed"] and margin.size <= within}
-    tables = [Table("Record and run", columns, rows, notes), *result.tables]
-    margins = [margin, *result.margins]
-    summary = f"{text}{result.summary}"
-    return replace(result, summary=summary, tables=tables, margins=margins, warnings=warnings, data=known)
+    known = dict(result.data) | {"passed": result.data["passed"] and margin.size <= within}
+    known["record"] = [mode.__dict__ | {"run": pairs[mode].run if mode in pairs else None} for mode in ring.modes]
+    return replace(
+        result,
+        summary=f"{text}{result.summary}",
+        tables=[Table("Record and run", columns, rows, notes), *result.tables],
+        margins=[margin, *result.margins],
+        warnings=[*result.warnings, *[COLOURED] * (not ring.white)],
+        data=known,
+    )
 
 
 def _pole(hz: float, zeta: float) -> complex:
@@ -55,80 +84,55 @@ def _pole(hz: float, zeta: float) -> complex:
     return complex(-zeta * hz / (1.0 - zeta**2) ** 0.5, hz)
 
 
-def _pairs(ring: tuple[RingMode, ...], modes: list[dict[str, Any]]) -> list[tuple[RingMode, dict[str, Any] | None]]:
-    """Every mode of a record with the one of the run whose pole is nearest, each used once; None beyond ALIKE."""
+def _pairs(ring: Sequence[RingMode], modes: list[dict[str, Any]]) -> dict[RingMode, Pair]:
+    """Modes of a record with those of the run whose poles are nearest, each used once, up to ALIKE."""
     close = list[tuple[float, int, int]]()
-    for i, one in enumerate(ring):
-        for k, mode in enumerate(modes):
-            hz, zeta = mode["simulated_hz"], mode["simulated_damping"]
-            if isfinite(hz) and hz > 0.0 and abs(zeta) < 1.0:
-                pole = _pole(hz, zeta)
-                close.append((abs(_pole(one.hz, one.zeta) - pole) / abs(pole), i, k))
-    matched, used = dict[int, dict[str, Any]](), set[int]()
+    for k, run in enumerate(modes):
+        hz, zeta = run["simulated_hz"], run["simulated_damping"]
+        if isfinite(hz) and hz > 0.0 and abs(zeta) < 1.0:
+            pole = _pole(hz, zeta)
+            close += [(abs(_pole(one.hz, one.zeta) - pole) / abs(pole), i, k) for i, one in enumerate(ring)]
+    found, used = dict[int, Pair](), set[int]()
     for distance, i, k in sorted(close):
-        if distance <= ALIKE and i not in matched and k not in used:
-            matched[i] = modes[k]
+        if distance <= ALIKE and i not in found and k not in used:
+            found[i] = Pair(ring[i], modes[k])
             used.add(k)
-    return [(one, matched.get(i)) for i, one in enumerate(ring)]
+    return {ring[i]: found[i] for i in sorted(found)}
 
 
-def _row(entry: int, mode: RingMode, one: dict[str, Any] | None) -> tuple[object, ...]:
-    """A row of the table."""
-    halves = [0.5 * (high - low) for low, high in (mode.hz_interval, mode.zeta_interval)]
-    if one is None:
-        return entry, None, mode.hz, halves[0], None, None, None, mode.zeta, halves[1], None, None
-    hz, zeta, after = (one[key] for key in ("simulated_hz", "damping", "simulated_damping"))
-    run = (hz, one["meant_hz"], mode.hz / hz - 1.0)
-    name = one["mode"] if one["axis"] == "bending" else f"{one['mode']} in {one['axis']}"
-    return entry, name, mode.hz, halves[0], *run, mode.zeta, halves[1], after, after - zeta
-
-
-def _beyond(value: float, interval: tuple[float, float], expected: float) -> float:
-    """Distance of an expected value from an interval, signed as value - expected; 0 inside."""
-    low, high = interval
-    return 0.0 if low <= expected <= high else low - expected if value > expected else high - expected
-
-
-def _verdict(pairs: list[tuple[RingMode, dict[str, Any] | None]], within: float) -> tuple[Margin, str]:
+def _verdict(ring: Sequence[RingMode], pairs: list[Pair], within: float) -> tuple[Margin, str]:
     """(margin, sentence of a record that agrees) of measured and simulated modes."""
-    both = [(mode, one) for mode, one in pairs if one]
-    name, words = "record of the run", ", ".join(three_digits(mode.hz) for mode, _ in pairs)
-    if not both:
+    name, words = "record of the run", ", ".join(three_digits(mode.hz) for mode in ring)
+    if not pairs:
         text = f"the record's frequencies ({words} Hz) are none of the file's as it runs"
-        return void(
-            name, text, "give the file and step of this run, and the unit of its times ('t_ms')", leads=True
-        ), ""
-    sizes = list[tuple[float, float, RingMode, dict[str, Any]]]()
-    for mode, one in both:
-        off = _beyond(mode.hz, mode.hz_interval, one["simulated_hz"]) / one["simulated_hz"]
-        sizes.append((off, _beyond(mode.zeta, mode.zeta_interval, one["simulated_damping"]), mode, one))
-    off, more, mode, one = max(sizes, key=lambda row: hypot(*row[:2]))
-    size, hz, after = hypot(off, more), one["simulated_hz"], one["simulated_damping"]
-    change, damping = mode.hz / hz - 1.0, f"{per_cent(mode.zeta)} damping in place of {per_cent(after)}"
-    text = f"mode {one['mode']} in {one['axis']} has {damping}"
-    if abs(off) > abs(more):
-        text = f"mode {one['mode']} in {one['axis']} is {per_cent(change)} {'high' if change > 0.0 else 'low'} "
-        text += f"({three_digits(mode.hz)} Hz in place of {three_digits(hz)} Hz)"
-    ratios = [mode.hz / one["simulated_hz"] for mode, one in both]
-    factor, remedy = sum(ratios) / len(ratios), "compare step, integrator, gravity and joints of the run with the file"
-    if abs(off) <= abs(more) and abs(mode.zeta - one["damping"]) < 0.5 * abs(mode.zeta - after):
-        remedy = "the run has the file's damping without the integrator's: give its step and integrator"
-    elif len(ratios) > 1 and max(ratios) - min(ratios) < COMMON * abs(factor - 1.0):
-        remedy = (
-            f"all modes are by the factor {factor:.4g}: stiffness over mass is {factor**2:.4g} times that of the file"
+        return void(name, text, "give the file and step of the run, and the unit of times ('t_ms')", leads=True), ""
+    worst, factors = max(pairs, key=lambda one: one.size), [1.0 + one.off for one in pairs]
+    mode, run, factor = worst.mode, worst.run, sum(factors) / len(factors)
+    remedy, after = "compare step, integrator, gravity and joints of the run with the file", run["simulated_damping"]
+    what = f"has {per_cent(mode.zeta)} damping in place of {per_cent(after)}"
+    if abs(worst.off) > abs(worst.more):
+        what = (
+            f"is {per_cent(worst.off)} {'high' if worst.off > 0.0 else 'low'} ({three_digits(mode.hz)} Hz in place of "
         )
-    failure = f"the record disagrees with the file as it runs: {text}"
+        what += f"{three_digits(run['simulated_hz'])} Hz)"
+        if len(factors) > 1 and max(factors) - min(factors) < COMMON * abs(factor - 1.0):
+            remedy = (
+                f"all modes are by the factor {factor:.4g}: stiffness over mass is {factor**2:.4g} times the file's"
+            )
+    elif abs(mode.zeta - run["damping"]) < 0.5 * abs(worst.more):
+        remedy = "the run has the file's damping without the integrator's: give its step and integrator"
+    where, more = f"mode {run['mode']} in {run['axis']}", max(pairs, key=lambda one: float(one.run["added"]))
+    failure = f"the record disagrees with the file as it runs: {where} {what}"
     limits: dict[str, Any] = {"fine": within, "limit": within, "harm": "premise", "remedy": remedy}
-    margin = Margin(name=name, size=size, where=f"at mode {one['mode']}", failure=failure, **limits)
-    worst = max(abs(mode.hz / one["simulated_hz"] - 1.0) for mode, one in both)
-    points = max(abs(mode.zeta - one["simulated_damping"]) for mode, one in both)
-    first = max(both, key=lambda pair: pair[1]["simulated_damping"] - pair[1]["damping"])
-    added = first[1]["simulated_damping"] - first[1]["damping"]
-    text = f"The record is that of the file as it runs: {len(both)} mode{'s' * (len(both) > 1)} "
-    text += f"within {per_cent(worst)} in frequency, {100.0 * points:.2g} points of damping"
-    if added > within:
+    margin = Margin(name=name, size=worst.size, where=f"at {where}", failure=failure, **limits)
+    if worst.size > within:
+        return margin, ""
+    text = f"The record is that of the file as it runs: {len(pairs)} mode{'s' * (len(pairs) > 1)} within "
+    text += f"{per_cent(max(abs(one.off) for one in pairs))} in frequency, "
+    text += f"{max(100.0 * abs(one.more) for one in pairs):.2g} points of damping"
+    if (added := more.run["added"]) > within:
         text += (
-            f"; mode {first[1]['mode']} rings at {per_cent(first[0].zeta)} damping, {100.0 * added:.2g} points of it "
+            f"; mode {more.run['mode']} rings at {per_cent(more.mode.zeta)} damping, {100.0 * added:.2g} points of it "
         )
         text += "the integrator's"
-    return margin, f"{text}. " if size <= within else ""
+    return margin, f"{text}. "

@@ -11,7 +11,7 @@ import numpy as np
 from verify.analysis.verdict import Margin, per_cent
 from verify.analytic_modes import ExactModel
 from verify.arrays import Array
-from verify.compare.record import read_record
+from verify.compare.record import need_record
 from verify.errors import InputError
 from verify.identify.fit import REJECTED, whiteness
 from verify.report.result import Column, Result, Table
@@ -65,9 +65,7 @@ def compare_steady(scene: Scene, path: Path, hz: float | None, places: Sequence[
     `hz`: default that of the drive. `places`: x of the signals, m. `data["passed"]`: amplitudes, in their phase, are
     `within` the exact ones, relative, beyond their intervals. Raises InputError.
     """
-    if (record := read_record(path)) is None:
-        raise InputError(f"file {str(path)!r} is no record: give 16 rows or more of a time 't' and signals")
-    drive = scene.drive
+    record, drive = need_record(path), scene.drive
     if drive is not None and (drive.kind != "force" or drive.shunt):
         raise InputError(
             f"drive.kind = {drive.kind!r}: a steady record is compared with forces, give 'force', no shunt"

@@ -11,7 +11,7 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
-from verify.compare.record import read_record
+from verify.compare.record import COLOURED, need_record
 from verify.errors import InputError
 from verify.identify.ring_down import ring_down
 from verify.identify.strip import Strip, identify_strip
@@ -32,16 +32,13 @@ def identify_records(
     own = named(beam).beam
     if not records or len(lengths) not in (0, len(records)):
         raise InputError(f"length: {len(lengths)} for {len(records)} records, give one for each, or none")
-    beams, rings = [replace(own, length=length) for length in lengths] or [own] * len(records), []
-    for path in map(Path, records):
-        if (record := read_record(path)) is None:
-            raise InputError(f"file {str(path)!r} is no record: give 16 rows or more of a time 't' and signals")
-        rings.append(ring_down(record.times, record.signals, n_modes))
+    beams = [replace(own, length=length) for length in lengths] or [own] * len(records)
+    rings = [ring_down(*need_record(Path(path))[:2], n_modes) for path in records]
     strip = identify_strip(beams, rings)
-    warnings = ["residuals of a record are not white: its intervals are too short"] * (not all(r.white for r in rings))
+    warnings = [COLOURED] * (not all(ring.white for ring in rings))
     if left := strip.left_out:
         warnings.append(f"left out, of no mode of the strip: {', '.join(f'{hz:.4g}' for hz in left)} Hz")
-    if strip.fitted.chi2 is None:
+    if strip.rough:
         warnings.append("frequencies differ by more than their noise from those of the strip: intervals by the misfit")
     highest = max(number for _, number, _ in strip.modes)
     data: dict[str, object] = {"chain": _chain(beams[0], strip)}
@@ -94,13 +91,11 @@ def _modes(beams: Sequence[Beam], records: Sequence[str | Path], strip: Strip) -
     columns = [Column("record"), Column("length", "m", ".4g"), Column("mode"), Column("measured", "Hz", ".6g")]
     columns += [Column("fitted", "Hz", ".6g"), Column("off", percent=True, format="+.2g")]
     columns += [Column(name, percent=True, format=".3g") for name in ("damping", "± (95 %)", "fitted damping")]
-    noise = [0.5 * (m.hz_interval[1] - m.hz_interval[0]) / 1.96 / m.hz for *_, m in strip.modes]
     rows = []
-    for (record, number, mode), rest, sd in zip(strip.modes, strip.fitted.residuals.tolist(), noise, strict=True):
-        half = 0.5 * (mode.zeta_interval[1] - mode.zeta_interval[0])
-        off, ratio = np.expm1(rest * sd), strip.damping.ratio(mode.hz)[0]
-        figures = (mode.undamped_hz, mode.undamped_hz / (1.0 + off), off, mode.zeta, half, ratio)
-        rows.append((Path(records[record]).name, beams[record].length, number, *figures))
+    for (record, number, mode), off in zip(strip.modes, strip.off.tolist(), strict=True):
+        figures = (mode.undamped_hz, mode.undamped_hz / (1.0 + off), off, mode.zeta, mode.halves[1])
+        name, fitted = Path(records[record]).name, strip.damping.ratio(mode.hz)[0]
+        rows.append((name, beams[record].length, number, *figures, fitted))
     return Table("Modes", columns, rows, ["Undamped frequencies."])
 
 

@@ -21,6 +21,7 @@ TIME = re.compile(r"t|times?(stamp)?|sec|seconds?|zeit|temps", re.IGNORECASE)
 TIMED = re.compile(rf"(?im)^[#%!\s\"]*(?:{TIME.pattern})(?![^\W\d_])")
 SECONDS = {"us": 1e-6, "µs": 1e-6, "ms": 1e-3, "min": 60.0}
 """Seconds in a unit that the header of times names; otherwise seconds."""
+COLOURED = "the residuals of the record are not white: more modes or nonlinear, its intervals too short"
 EMPTY = re.compile(r"(?<=[,;\t])[ ]*(?=[,;\t]|$)")
 """A cell without a value in a row of numbers."""
 DIGITS, ROUNDED = 10, 0.75
@@ -71,6 +72,13 @@ def read_record(path: Path) -> Record | None:
     return _cleaned(table, names, unit, source)
 
 
+def need_record(path: Path) -> Record:
+    """The record in a text file. Raises InputError for a list, too."""
+    if (record := read_record(path)) is None:
+        raise InputError(f"file {str(path)!r} is no record: give 16 rows or more of a time 't' and signals")
+    return record
+
+
 def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record:
     """The record of a table without empty columns, rows without a value and repeated rows. Raises InputError."""
     full = ~np.isnan(np.where(np.isinf(table), np.nan, table))
@@ -117,8 +125,7 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     columns += [Column(f"amplitude of {name}", format=".3g") for name in record.names]
 
     def row(number: int, mode: RingMode) -> tuple[object, ...]:
-        halves = [0.5 * (high - low) for low, high in (mode.hz_interval, mode.zeta_interval)]
-        return number, mode.hz, halves[0], mode.zeta, halves[1], *mode.amplitude
+        return number, mode.hz, mode.halves[0], mode.zeta, mode.halves[1], *mode.amplitude
 
     rows = [row(number, mode) for number, mode in enumerate(ring.modes, start=1)]
     used = record.times[record.times >= ring.start]
@@ -128,8 +135,7 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
         notes.append(f"Free vibration from {ring.start:.4g} s on; what is before, as the rise of a load, is left out.")
     unseen, warnings = _unseen(ring, used, beam) if beam else ([], [])
     notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
-    if not ring.white:
-        warnings.append("the residuals of the record are not white: more modes or nonlinear, its intervals too short")
+    warnings += [COLOURED] * (not ring.white)
     if len(ring.modes) == 1 and abs(ring.modes[0].zeta) < STEADY:
         warnings.append(f"a vibration that does not decay: compare a steady one by --drive {ring.modes[0].hz:.4g}Hz")
     modes = [mode.__dict__ | {"undamped_hz": mode.undamped_hz} for mode in ring.modes]

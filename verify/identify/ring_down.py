@@ -50,6 +50,12 @@ class RingMode:
     """At the first sample, of every channel, in its unit; 0 of a constant one."""
 
     @property
+    def halves(self) -> tuple[float, float]:
+        """Half widths of the intervals of frequency, Hz, and damping ratio."""
+        (f, g), (low, high) = self.hz_interval, self.zeta_interval
+        return 0.5 * (g - f), 0.5 * (high - low)
+
+    @property
     def undamped_hz(self) -> float:
         """Frequency without damping."""
         return self.hz / float(np.sqrt(1.0 - self.zeta**2))

@@ -54,7 +54,7 @@ class Damping:
 class Strip:
     """What records of a strip determine; `stiffness` for a rigid clamp where `compliance` is None.
 
-    `modes`: (record, mode number, mode) of every frequency that is used; `left_out`: those of no mode, Hz.
+    `modes`: (record, mode number, mode) of every frequency that is used, `left_out`: those of no mode, Hz.
     """
 
     stiffness: Estimate
@@ -62,7 +62,10 @@ class Strip:
     damping: Damping
     modes: tuple[tuple[int, int, RingMode], ...]
     left_out: tuple[float, ...]
-    fitted: Fit
+    off: Array
+    """Frequencies of `modes` over the fitted ones, less 1."""
+    rough: bool
+    """Whether they differ by more than their noise, so that the intervals are by the misfit."""
     spread: float
     """Relative change of EI by independent errors of 0.1 % in the frequencies, as of theory; 0 for a rigid clamp."""
 
@@ -77,7 +80,7 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
         if beam.supports != ("clamped", "free"):
             raise InputError(f"beam.supports = {'-'.join(beam.supports)}: a strip is clamped-free, give these")
     modes, left_out = _assigned(beams, rings)
-    data, noise = np.array([(np.log(one.undamped_hz), _sd(one.hz_interval) / one.hz) for *_, one in modes]).T
+    data, noise = np.array([(np.log(m.undamped_hz), m.halves[0] / QUANTILE / m.hz) for *_, m in modes]).T
     places = [(record, number) for record, number, _ in modes]
     model, both = _model(beams, places, noise), [STIFFNESS, COMPLIANCE]
     fitted, spread = _fit(model, data / noise, both[: len(modes)]), 0.0
@@ -91,12 +94,11 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
         changes = np.linalg.pinv(np.stack([slopes[name] for name in both], axis=1))[0]
         spread = float(np.linalg.norm(changes)) / first.value
     compliance = fitted.estimates.get(COMPLIANCE)
-    damping = _damping(*np.array([(one.hz, one.zeta, _sd(one.zeta_interval)) for *_, one in modes]).T)
-    return Strip(fitted.estimates[STIFFNESS], compliance, damping, tuple(modes), tuple(left_out), fitted, spread)
-
-
-def _sd(interval: tuple[float, float]) -> float:
-    return 0.5 * (interval[1] - interval[0]) / QUANTILE
+    damping, off = _damping(*np.array([(m.hz, m.zeta, m.halves[1] / QUANTILE) for *_, m in modes]).T), fitted.residuals
+    lost, rough = tuple(left_out), fitted.chi2 is None
+    return Strip(
+        fitted.estimates[STIFFNESS], compliance, damping, tuple(modes), lost, np.expm1(off * noise), rough, spread
+    )
 
 
 def _fit(model: Model, data: Array, names: list[str], start: dict[str, float] | None = None) -> Fit:
