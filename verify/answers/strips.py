@@ -36,8 +36,9 @@ def identify_records(
     rings = [ring_down(*need_record(Path(path))[:2], n_modes) for path in records]
     strip = identify_strip(beams, rings)
     warnings = [COLOURED] * (not all(ring.white for ring in rings))
-    if left := strip.left_out:
-        warnings.append(f"left out, of no mode of the strip: {', '.join(f'{hz:.4g}' for hz in left)} Hz")
+    if strip.left_out:
+        lost = ", ".join(f"{hz:.4g}" for hz in strip.left_out)
+        warnings.append(f"left out, of no mode of the strip or too near half the sampling rate: {lost} Hz")
     if strip.rough:
         warnings.append("frequencies differ by more than their noise from those of the strip: intervals by the misfit")
     highest = max(number for _, number, _ in strip.modes)

@@ -133,7 +133,7 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     notes = [f"Least squares over {span}, with offset and drift. Listed above: undamped frequencies.", *record.notes]
     if len(used) < len(record.times):
         notes.append(f"Free vibration from {ring.start:.4g} s on; what is before, as the rise of a load, is left out.")
-    unseen, warnings = _unseen(ring, used, beam) if beam else ([], [])
+    unseen, warnings = _unseen(ring, beam) if beam else ([], [])
     notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
     warnings += [COLOURED] * (not ring.white)
     if len(ring.modes) == 1 and abs(ring.modes[0].zeta) < STEADY:
@@ -143,9 +143,9 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     return replace(result, tables=tables, warnings=warnings, data=dict(result.data) | {"record": modes})
 
 
-def _unseen(ring: RingDown, times: Array, beam: Beam) -> tuple[list[str], list[str]]:
+def _unseen(ring: RingDown, beam: Beam) -> tuple[list[str], list[str]]:
     """(notes, warnings) on modes of a beam above half the sampling rate, which appear at lower frequencies."""
-    rate = (len(times) - 1) / float(times[-1] - times[0])
+    rate = ring.rate
     try:
         exact = frequencies_hz(Candidate(model=EXACT), beam, None, ALIASES).tolist()
     except InputError:

@@ -73,6 +73,8 @@ class RingDown:
     white: bool
     start: float = 0.0
     """Time of the first sample that the fit uses, s."""
+    rate: float = np.inf
+    """Mean number of samples a second."""
 
     @property
     def hertz(self) -> Array:
@@ -161,7 +163,8 @@ def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:
             scale[channel] * hypot(value[f"c{c},{i}"], value[f"c{c},{count + i}"]) for i in range(count)
         ]
     modes = _modes(fitted, float(t[-1] - origin), sizes)
-    return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected, float(origin))
+    rate, white = (len(t) - 1) / float(t[-1] - origin), COLOURED not in fitted.rejected
+    return RingDown(modes, fitted.noise * float(scale.max()), white, float(origin), rate)
 
 
 def _pencil(t: Array, y: Array) -> ComplexArray:

@@ -30,6 +30,8 @@ ROUGH = 1e-3
 """Error of a frequency, relative, whose effect on EI is stated."""
 LAWS = {"a constant loss factor": 0.0, "viscosity (in proportion to f)": 1.0, "drag (in proportion to 1/f)": -1.0}
 """Powers of the frequency in damping ratios."""
+FAST = 0.45
+"""Frequency over the sampling rate above which that of a mode above half the rate may appear."""
 ALIKE = 0.01
 """Relative difference of frequencies up to which they are one."""
 QUANTILE = 1.96
@@ -114,10 +116,14 @@ def _fit(model: Model, data: Array, names: list[str], start: dict[str, float] | 
 
 def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tuple[int, int, RingMode]], list[float]]:
     """(record, mode number, mode) of the frequencies that are of modes with one common factor, and the others, Hz."""
-    used = [[one for one in ring.modes if abs(one.zeta) < BRIEF] for ring in rings]
-    left_out = [one.hz for ring in rings for one in ring.modes if abs(one.zeta) >= BRIEF]
+    used = [[m for m in ring.modes if abs(m.zeta) < BRIEF and m.hz < FAST * ring.rate] for ring in rings]
+    left_out = [m.hz for ring, own in zip(rings, used, strict=True) for m in ring.modes if m not in own]
     longest = max(beam.length for beam in beams)
     while True:
+        if not all(used):
+            raise InputError(
+                "records: a record has no frequency of a strip below 0.45 of its sampling rate, film faster"
+            )
         count = max(len(modes) for modes in used) + SPARE
         measured = [np.log([one.undamped_hz for one in modes]) for modes in used]
         best = np.inf, tuple[tuple[int, ...], ...]()
