@@ -136,9 +136,12 @@ def test_a_frequency_of_no_mode_is_left_out_and_of_no_strip_refused(capsys):
     found, _, _ = identified(capsys, "ring.csv")
     assert contains(found["bending_stiffness"], 0.5371)
     assert any("31" in text for text in found["warnings"])
+    found, _, _ = identified(capsys, "ring.csv", beam=STEEL.replace("1.1 mm", "2 mm"))
+    assert any("times the one that is given" in text for text in found["warnings"])
     for words, remedy in (
         ((STEEL.replace("cantilever", "pinned-pinned"), "ring.csv"), "clamped-free"),
         ((STEEL, "ring.csv", "ring.csv", "--length", "0.3"), "one for each"),
+        ((STEEL, "ring.csv", "ring.csv", "--length", "0.31", "--length", "0.9"), "of no strip"),
     ):
         assert status_of(["identify", "--beam", *words]) == 2
         assert remedy in capsys.readouterr().err

@@ -18,6 +18,9 @@ from verify.identify.strip import Strip, identify_strip
 from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
+FAR = 3.0
+"""Factor between the stiffness that is given and the result beyond which the mode numbers are in doubt."""
+
 
 @one_blas_thread()
 def identify_records(
@@ -31,7 +34,7 @@ def identify_records(
     """
     own = named(beam).beam
     if not records or len(lengths) not in (0, len(records)):
-        raise InputError(f"length: {len(lengths)} for {len(records)} records, give one for each, or none")
+        raise InputError(f"length: {len(lengths)} for {len(records)} records, give one for each record, or none")
     beams = [replace(own, length=length) for length in lengths] or [own] * len(records)
     rings = [ring_down(*need_record(Path(path))[:2], n_modes) for path in records]
     strip = identify_strip(beams, rings)
@@ -39,6 +42,8 @@ def identify_records(
     if strip.left_out:
         lost = ", ".join(f"{hz:.4g}" for hz in strip.left_out)
         warnings.append(f"left out, of no mode of the strip or too near half the sampling rate: {lost} Hz")
+    if not 1.0 / FAR < (factor := strip.stiffness.value / own.bending_stiffness) < FAR:
+        warnings.append(f"EI is {factor:.2g} times the one that is given: check section, material and length")
     if strip.rough:
         warnings.append("frequencies differ by more than their noise from those of the strip: intervals by the misfit")
     highest = max(number for _, number, _ in strip.modes)

@@ -86,6 +86,8 @@ def compare(
         return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
     if drive is not None:
         return _steady(scene, words, overrides, drive, places, within, formats)
+    if places:
+        raise click.UsageError("--at is of a steady record with --drive.")
     if engine or time_step:
         raise click.UsageError("--engine and --step are of a chain in an .xml, .sdf or .urdf.")
     if bool(words) == bool(model):

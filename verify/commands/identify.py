@@ -18,7 +18,7 @@ Metres = Annotated[float, unit("m")]
 
 @click.command(cls=BeamCommand)
 @scene_argument
-@click.argument("records", nargs=-1, metavar="RECORD...")
+@click.argument("records", nargs=-1, required=True, metavar="RECORD...")
 @overrides_option
 @click.option("--length", "lengths", multiple=True, metavar="L", help="Free length of each record, such as 250mm.")
 @click.option("--modes", type=click.IntRange(1, 8), metavar="N", help="Modes of every record. Default: above noise.")

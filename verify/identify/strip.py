@@ -118,7 +118,7 @@ def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tu
     """(record, mode number, mode) of the frequencies that are of modes with one common factor, and the others, Hz."""
     used = [[m for m in ring.modes if abs(m.zeta) < BRIEF and m.hz < FAST * ring.rate] for ring in rings]
     left_out = [m.hz for ring, own in zip(rings, used, strict=True) for m in ring.modes if m not in own]
-    longest = max(beam.length for beam in beams)
+    longest, misfits = max(beam.length for beam in beams), 0
     while True:
         if not all(used):
             raise InputError(
@@ -140,7 +140,8 @@ def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tu
                 for one, number in zip(modes, numbers, strict=True)
             ], left_out
         weakest = min((modes for modes in used if len(modes) > 1), key=lambda m: min(map(_size, m)), default=None)
-        if weakest is None:
+        misfits += 1
+        if weakest is None or misfits >= sum(map(len, used)) - 1:  # as many as are left, which are of any strip
             raise InputError("records: their frequencies are of no strip of these lengths, check length, unit of time")
         weakest.remove(lost := min(weakest, key=_size))
         left_out.append(lost.hz)
