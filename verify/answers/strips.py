@@ -52,7 +52,8 @@ def identify_records(
         data[name] = one and {"value": one.value, "interval": one.interval, "unit": one.unit}
     data |= {"damping": {"terms": strip.damping.terms, "law": strip.damping.law}}
     tables = [_quantities(beams[0], strip), _modes(beams, records, strip)]
-    margins = beam_margins(SolutionCache(beams[0]), (), mode=highest)
+    fitted = replace(beams[0], youngs_modulus=(own.youngs_modulus or 0.0) * factor)
+    margins = beam_margins(SolutionCache(fitted), (), mode=highest)
     return Result(_summary(beams, strip), tables, warnings=warnings, margins=margins, data=data)
 
 
@@ -61,21 +62,16 @@ def _summary(beams: Sequence[Beam], strip: Strip) -> str:
     ei, soft, beam = strip.stiffness, strip.compliance, beams[0]
     text = f"EI = {ei.value:.5g} ± {0.5 * (ei.interval[1] - ei.interval[0]):.2g} N m2"
     if soft is None:
-        text += " for a rigid clamp, the least value: these frequencies do not separate EI from the clamp, whose"
-        text += (
-            f" compliance C raises EI by 4 C EI2/L; give a record of another free length. Damping: {strip.damping.law}"
-        )
+        text += " for a rigid clamp, the least value: these frequencies do not separate EI from the clamp, whose "
+        text += "compliance C raises EI by 4 C EI2/L; give a record of another free length."
     else:
         value = f"{soft.value:.3g} ± {0.5 * (soft.interval[1] - soft.interval[0]):.2g}"
         value = f"at most {soft.interval[1]:.2g}" if soft.interval[0] <= 0.0 else value
-        text += (
-            f", compliance of the clamp {value} rad/(N m), by noise alone: errors of theory of 0.1 % in frequencies "
-        )
-        text += f"change EI by {per_cent(strip.spread)}. Damping: {strip.damping.law}"
-    mass = (
-        f"{beam.mass_per_length:.4g} kg/m, and the free lengths, of which 1 mm changes EI by {0.4 / beam.length:.2g} %"
-    )
-    return f"{text}. Frequencies determine EI over the mass, taken as {mass}."
+        text += f", compliance of the clamp {value} rad/(N m), by noise alone: errors of theory of 0.1 % in "
+        text += f"frequencies change EI by {per_cent(strip.spread)}."
+    mass, change = f"{beam.mass_per_length:.4g} kg/m", f"{0.4 / beam.length:.2g} %"
+    text += f" Damping: {strip.damping.law}. Frequencies determine EI over the mass, taken as {mass}, and the free "
+    return f"{text}lengths, of which 1 mm changes EI by {change}."
 
 
 def _quantities(beam: Beam, strip: Strip) -> Table:
@@ -113,8 +109,7 @@ def _chain(beam: Beam, strip: Strip) -> dict[str, object]:
         spring = f"[{{position=0, rotational={1.0 / soft.value:.6g}}}]"
         fields += ["beam.supports=pinned,free", f"beam.spring={spring}"]
     first = [(number, strip.damping.ratio(mode.hz)[0]) for record, number, mode in strip.modes if record == 0]
-    damped = [(number, ratio) for number, ratio in first if ratio > 0.0][
-        : 2 if strip.damping.terms[[0, 2]].any() else 1
-    ]
+    most = 2 if strip.damping.terms[[0, 2]].any() else 1  # dashpots alone are a viscosity
+    damped = [(number, ratio) for number, ratio in first if ratio > 0.0][:most]
     ratios, numbers = " ".join(f"{100.0 * ratio:.3g}%" for _, ratio in damped), ",".join(str(n) for n, _ in damped)
     return {"set": fields, "damping": f"{ratios} at {numbers}" if damped else "0"}

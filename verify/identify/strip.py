@@ -97,10 +97,8 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
         spread = float(np.linalg.norm(changes)) / first.value
     compliance = fitted.estimates.get(COMPLIANCE)
     damping, off = _damping(*np.array([(m.hz, m.zeta, m.halves[1] / QUANTILE) for *_, m in modes]).T), fitted.residuals
-    lost, rough = tuple(left_out), fitted.chi2 is None
-    return Strip(
-        fitted.estimates[STIFFNESS], compliance, damping, tuple(modes), lost, np.expm1(off * noise), rough, spread
-    )
+    more = tuple(left_out), np.expm1(off * noise), fitted.chi2 is None, spread
+    return Strip(fitted.estimates[STIFFNESS], compliance, damping, tuple(modes), *more)
 
 
 def _fit(model: Model, data: Array, names: list[str], start: dict[str, float] | None = None) -> Fit:
@@ -121,9 +119,7 @@ def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tu
     longest, misfits = max(beam.length for beam in beams), 0
     while True:
         if not all(used):
-            raise InputError(
-                "records: a record has no frequency of a strip below 0.45 of its sampling rate, film faster"
-            )
+            raise InputError("records: a record has no frequency below 0.45 of its sampling rate, film faster")
         count = max(len(modes) for modes in used) + SPARE
         measured = [np.log([one.undamped_hz for one in modes]) for modes in used]
         best = np.inf, tuple[tuple[int, ...], ...]()
