@@ -21,6 +21,8 @@ MOST_MODES = 8
 """Modes that are looked for; a record of a beam rarely has more above its noise."""
 PENCIL = 600
 """Samples of the start, thinned from the record: its Hankel matrix costs their cube."""
+MANY = 3000
+"""Samples by which modes of a record of more than twice as many are counted before all are used."""
 EVEN = 1e-3
 """Largest deviation of a time from even spacing, over the spacing, that the start ignores."""
 GAIN = 10.0
@@ -31,9 +33,10 @@ GROWTH = 100.0
 """Exponent of a growth that the least squares may try: e^100 squared is still a number."""
 GRAIN = 1e-8
 """Amplitude of a mode over the largest of its channel, below which it is one of rounding."""
-RELEASE, SWING, CLEARER, BRIEF = 0.9, 0.3, 0.5, 0.2
+RELEASE, SWING, CLEARER, QUIET, BRIEF = 0.9, 0.3, 0.5, 1e-3, 0.2
 """Deflection of a beam that is released, over the largest before it swings back by SWING of the largest of all; noise
-without what is before, over that of all; damping ratio of modes that may mimic a load."""
+without what is before, over that of all; noise over the range that no load leaves; damping ratio of modes that may be
+fitted to a load."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,8 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     whole: RingDown | InputError
     try:
         whole = _ring(t, y, n_modes)
-        if whole.white and all(abs(mode.zeta) < BRIEF for mode in whole.modes):
+        quiet = whole.white or whole.noise < QUIET * float(np.ptp(y, axis=0).max())
+        if quiet and all(abs(mode.zeta) < BRIEF for mode in whole.modes):
             return whole
     except InputError as error:
         whole = error
@@ -137,23 +141,13 @@ def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:
         raise InputError("record: its signals are constant, nothing rings")
     y, moving = y[:, scale > 0.0] / scale[scale > 0.0], np.flatnonzero(scale)
     origin = t[0]
-    line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
-    best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
     poles = _strongest(t - origin, y, _pencil(t - origin, y))
-    for m in (n_modes,) if n_modes else range(1, min(MOST_MODES, len(t) // 8) + 1):
-        if len(poles) < m:
-            break
-        try:
-            fitted = _fit(t - origin, y, poles[:m])
-        except InputError:  # of too few modes the least squares may wander
-            if n_modes:
-                raise
-            continue
-        size = y.size * log(max(float((fitted.residuals**2).sum()), 1e-300)) + (2 + 2 * y.shape[1]) * m * log(y.size)
-        if size > least - GAIN and not n_modes:
-            break
-        best, least = (m, fitted), size
-    if best is None:
+    orders = range(n_modes or 1, (n_modes or min(MOST_MODES, len(t) // 8)) + 1)
+    if not n_modes and len(t) > 2 * MANY:
+        some = np.sort(np.random.default_rng(63).permutation(len(t))[:MANY])
+        if early := _order(t[some] - origin, y[some], poles, orders):
+            orders = range(min(early[0], orders.stop - 2), orders.stop)
+    if (best := _order(t - origin, y, poles, orders)) is None:
         raise InputError("record: no frequency rings in it above its noise, give a longer one or more samples")
     count, fitted = best
     sizes = np.zeros((count, len(scale)))
@@ -165,6 +159,27 @@ def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:
     modes = _modes(fitted, float(t[-1] - origin), sizes)
     rate, white = (len(t) - 1) / float(t[-1] - origin), COLOURED not in fitted.rejected
     return RingDown(modes, fitted.noise * float(scale.max()), white, float(origin), rate)
+
+
+def _order(t: Array, y: Array, poles: ComplexArray, orders: range) -> tuple[int, Fit] | None:
+    """(number of modes, fit) by Schwarz's criterion among `orders`, of one order without it; None where none is better.
+
+    Raises InputError where the fit of one order does not converge.
+    """
+    line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
+    best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
+    for m in (order for order in orders if order <= len(poles)):
+        try:
+            fitted = _fit(t, y, poles[:m])
+        except InputError:  # of too few modes the least squares may wander
+            if len(orders) == 1:
+                raise
+            continue
+        size = y.size * log(max(float((fitted.residuals**2).sum()), 1e-300)) + (2 + 2 * y.shape[1]) * m * log(y.size)
+        if size > least - GAIN and len(orders) > 1:
+            break
+        best, least = (m, fitted), size
+    return best
 
 
 def _pencil(t: Array, y: Array) -> ComplexArray:
