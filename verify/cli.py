@@ -25,6 +25,7 @@ COMMANDS = {
     "chain": "Joints and links as rigid bodies for MuJoCo, Gazebo, Drake.",
     "sweep": "Evaluate quantities over lists of values.",
     "compare": "Identify the discretisation behind natural frequencies.",
+    "identify": "Stiffness, clamp and damping of a strip from records.",
     "cases": "Problems of known answer for any engine: sheets, files.",
     "judge": "Judge the table of numbers of a run of a case.",
     "bench": "Measure run time over error of all methods.",

@@ -17,7 +17,9 @@ from verify.cli import cli, status_of
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
-TUTORIALS = [ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching")]
+TUTORIALS = [
+    ROOT / "docs" / "tutorials" / f"{name}.md" for name in ("motor", "program", "teaching", "from-a-track-to-a-chain")
+]
 GUIDES = [
     ROOT / "docs" / f"{name}.md"
     for name in ("engines", "actuators", "control", "compare", "cases", "continuous-integration")
@@ -90,6 +92,8 @@ def test_commands_of_a_tutorial_print_what_it_shows(page, tmp_path, monkeypatch,
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tests").symlink_to(ROOT / "tests")  # pages name files of the repository from its top folder
     text, status = page.read_text("utf-8"), 0
+    for name in re.findall(r"\{download\}`([^`]+)`", text):
+        Path(name).write_bytes((page.parent / name).read_bytes())
     for name, body in re.findall(r"^:caption: (\S+)\n\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
         Path(name).write_text(body, "utf-8")
     parts = [re.split(r"^\$ ", body.replace("\\\n", ""), flags=re.MULTILINE)[1:] for body in boxes(page, "console")]

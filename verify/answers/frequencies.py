@@ -61,7 +61,7 @@ def compare_frequencies(
         if str(path) != "-" and (record := read_record(path)):
             ring = ring_down(record.times, record.signals)
             found = compare_list(scene, as_list(ring, f"record {str(path)!r}"), shapes, options, progress)
-            return with_record(found, ring, record)
+            return with_record(found, ring, record, scene.beam)
         given = read_frequencies(path, unit)
     elif isinstance(frequencies, FrequencyList):
         given = frequencies

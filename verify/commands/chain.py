@@ -8,6 +8,7 @@ import click
 
 from verify.answers.chains import engine_chain
 from verify.answers.curves import curve_chain
+from verify.answers.ringing import with_run
 from verify.commands.choose import relative_error
 from verify.commands.shared import (
     CHAINS,
@@ -28,6 +29,8 @@ from verify.settings import DEFAULT, WALLS
 from verify.validation import unit
 
 Seconds = Annotated[float, unit("s")]
+RECORDS = ".csv", ".txt", ".tsv", ".dat", ".asc"
+"""Suffixes of records of a run."""
 FIRST = 4
 """Joints that the terminal always shows."""
 RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
@@ -114,14 +117,20 @@ def judge_chain(
     formats: dict[str, Any],
     run: dict[str, Any],
 ) -> None:
-    """Print what `verify compare [SCENE] FILE` finds in a chain of rigid bodies; exit status 1 where it fails."""
+    """Print what `verify compare [SCENE] FILE [RECORD]` finds in a chain of rigid bodies and in a record of its run.
+
+    Exit status 1 where it fails.
+    """
     files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]
-    others = [word for word in words if Path(word) not in files]
-    if len(files) > 1 or len(others) > 1:
-        raise InputError(f"{' '.join(words)}: give one file, with one scene or none")
+    records = [Path(word) for word in words if Path(word).suffix.lower() in RECORDS]
+    others = [word for word in words if Path(word) not in (*files, *records)]
+    if len(files) > 1 or len(others) > 1 or len(records) > 1:
+        raise InputError(f"{' '.join(words)}: give one file, with one scene or none, one record or none")
     beam = load_beam(others[0], overrides).beam if others else None
     out = Path(corrected) if corrected else None
     result = judge_file(files[0], beam, modes, relative_error(within), theory, out, **run)
+    if records:
+        result = with_run(result, records[0], relative_error(within))
     if not any(formats.values()):
         result = replace(
             result, tables=[_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]

@@ -16,6 +16,8 @@ from verify.settings import THEORIES
 from verify.validation import Relative, unit
 
 Seconds = Annotated[float, unit("s")]
+Metres = Annotated[float, unit("m")]
+Hertz = Annotated[float, unit("Hz")]
 
 
 @click.command(cls=shared.BeamCommand)
@@ -40,6 +42,8 @@ Seconds = Annotated[float, unit("s")]
     type=click.Choice(THEORIES),
     help="Of the exact beam. Default: that of the list; in space, rayleigh.",
 )
+@click.option("--drive", metavar="HZ", help="FILE is a record of a steady vibration at it; 'scene': that of the drive.")
+@click.option("--at", "places", multiple=True, metavar="X", help="Place of each signal of a steady record: 0.3m.")
 @click.option("--corrected", metavar="OUT", help="Write the chain of an .xml, .sdf or .urdf with correct stiffnesses.")
 @click.option("--engine", metavar="NAME[:INTEGRATOR]", default="", help="That a chain runs in. Default: its file's.")
 @click.option("--step", "time_step", metavar="TIME", help="Its time step, such as 1ms. Default: that of its file.")
@@ -56,6 +60,8 @@ def compare(
     mode: int | None,
     within: str,
     theory: str | None,
+    drive: str | None,
+    places: tuple[str, ...],
     corrected: str | None,
     engine: str,
     time_step: str | None,
@@ -68,7 +74,8 @@ def compare(
 
     FILE may be a record of free vibration: a table with a time column, then signals.
 
-    FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md).
+    FILE may be a chain of rigid bodies, with or without SCENE: .xml (MJCF), .sdf, .urdf (see docs/engines.md), and a
+    record of its run may follow: `verify compare my.xml ring.csv`.
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
@@ -77,6 +84,10 @@ def compare(
 
         run = {"engine": engine, "step": None if time_step is None else typed(time_step, Seconds, "step")}
         return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
+    if drive is not None:
+        return _steady(scene, words, overrides, drive, places, within, formats)
+    if places:
+        raise click.UsageError("--at is of a steady record with --drive.")
     if engine or time_step:
         raise click.UsageError("--engine and --step are of a chain in an .xml, .sdf or .urdf.")
     if bool(words) == bool(model):
@@ -104,6 +115,29 @@ def compare(
             theory=theory,
             progress=step,
         )
+    shared.show(result, **formats)
+    if not result.data["passed"]:
+        raise SystemExit(shared.GATE_FAILED)
+
+
+def _steady(
+    scene: str,
+    words: tuple[str, ...],
+    overrides: tuple[str, ...],
+    drive: str,
+    places: tuple[str, ...],
+    within: str,
+    formats: dict[str, Any],
+) -> None:
+    """Print a record of a steady vibration beside the exact field of the drive; exit status 1 where it is off."""
+    from verify.answers.steady import compare_steady  # and scenes with a drive
+    from verify.scene.load import load_scene
+
+    if len(words) != 1:
+        raise click.UsageError("Give one record to --drive.")
+    hz, at = None if drive == "scene" else typed(drive, Hertz, "drive"), [typed(one, Metres, "at") for one in places]
+    limit = typed(within, Relative, "within")
+    result = compare_steady(load_scene(scene, overrides, {"drive"}), Path(words[0]), hz, at, limit)
     shared.show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)

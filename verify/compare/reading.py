@@ -136,7 +136,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     """
     source = f"frequencies file {str(path)!r}"
     text = read_text(path, "file")
-    if cells := _solver_cells(text):
+    if cells := solver_cells(text):
         return listed(source, _numbers(cells, source), cells, declared=True)
     lines = [line.strip() for line in text.splitlines() if line.strip() and line.strip()[0] not in "#%!"]
     if brackets := re.match(r"\s*(?:\w+\s*=\s*)?(?:(?:np\.)?array\()?[\[(](.*)[\])]", text, re.DOTALL):
@@ -160,7 +160,9 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     best = [k for k in columns if units.get(k) == "Hz"]
     columns = best[:1] if len(columns) > 1 and len(best) == 1 else columns
     if len(columns) != 1:
-        raise InputError(f"{source} has {len(columns)} columns that may be frequencies: name one of them 'hz'")
+        raise InputError(
+            f"{source} has {len(columns)} columns that may be frequencies: name one 'hz', or the times of a record 't'"
+        )
     column, numbers = columns[0], None
     chosen = unit or units.get(column)
     if numbered is not None:
@@ -172,7 +174,7 @@ def read_frequencies(path: Path, unit: str | None = None) -> FrequencyList:
     return listed(source, table[:, column].tolist(), [row[column] for row in rows], **more)
 
 
-def _solver_cells(text: str) -> list[str]:
+def solver_cells(text: str) -> list[str]:
     """Frequencies in Hz as text from a solver's table: a mode number, then among others omega^2, omega, omega / 2 pi.
 
     So do CalculiX (.dat), Nastran (.f06) and Abaqus (.dat) print them. The first table, empty without one.

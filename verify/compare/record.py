@@ -8,46 +8,104 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.arrays import Array
-from verify.compare.reading import FrequencyList, read_table
+from verify.compare.candidates import EXACT, Candidate, frequencies_hz
+from verify.compare.reading import FrequencyList, read_table, solver_cells
+from verify.errors import InputError
 from verify.files import read_text
 from verify.identify.ring_down import FEWEST, RingDown, RingMode
+from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 
-TIME = re.compile(r"t|time|zeit|temps", re.IGNORECASE)
+TIME = re.compile(r"t|times?(stamp)?|sec|seconds?|zeit|temps", re.IGNORECASE)
 """First word of a header of times."""
-SECONDS = {"us": 1e-6, "µs": 1e-6, "ms": 1e-3}
+TIMED = re.compile(rf"(?im)^[#%!\s\"]*(?:{TIME.pattern})(?![^\W\d_])")
+SECONDS = {"us": 1e-6, "µs": 1e-6, "ms": 1e-3, "min": 60.0}
 """Seconds in a unit that the header of times names; otherwise seconds."""
+COLOURED = "the residuals of the record are not white: more modes or nonlinear, its intervals too short"
+EMPTY = re.compile(r"(?<=[,;\t])[ ]*(?=[,;\t]|$)")
+"""A cell without a value in a row of numbers."""
+DIGITS, ROUNDED = 10, 0.75
+"""Decimals of a time that may be rounded; deviation from even spacing, over its last digit, by half a digit and fit."""
+STEADY = 1e-4
+"""Damping ratio below which a single mode may be driven."""
+ALIASES, NEAR = 12, 0.01
+"""Modes of the beam that may be sampled too slowly, and the relative error of their frequency in a record."""
 
 
 class Record(NamedTuple):
-    """Times (n,), s, and signals (n, channels) with their names."""
+    """Times (n,), s, and signals (n, channels) with their names; `notes`: what is not as in the file."""
 
     times: Array
     signals: Array
     names: list[str]
+    notes: tuple[str, ...] = ()
 
 
 def read_record(path: Path) -> Record | None:
     """The record in a text file, None for a list of frequencies.
 
     Its first column is named as a time, or ascends without being mode numbers, over 16 rows or more; further columns
-    are signals. Raises InputError.
+    are signals. Rows without a value and repeated rows are left out. Raises InputError, also for times that go back.
     """
     source = f"file {str(path)!r}"
     text = read_text(path, "file")
-    if sum(bool(line.strip()) for line in text.splitlines()) < FEWEST:
+    if sum(bool(line.strip()) for line in text.splitlines()) < FEWEST or solver_cells(text):
         return None
-    head, table = read_table(text, source)
+    try:
+        rows = (EMPTY.sub("nan", line) if line[:1] in "0123456789.+-" else line for line in text.splitlines())
+        head, table = read_table("\n".join(rows), source)
+    except InputError:
+        if TIMED.search(text):
+            raise
+        return None
     if len(table) < FEWEST or table.shape[1] < 2:
         return None
     words = re.findall(r"[^\W\d_]+", head[0]) if head else []
-    timed = bool(words and TIME.fullmatch(words[0]))
-    ascending = bool((np.diff(table[:, 0]) > 0.0).all())
+    timed, ascending = bool(words and TIME.fullmatch(words[0])), bool((np.diff(table[:, 0]) > 0.0).all())
+    if not timed and not head and ascending and not (table[:, 0] % 1.0).any() and (table[:, 1:] < 0.0).any():
+        text = "whole numbers and negative values without a header: name the columns, such as 't_ms' and 'y_mm'"
+        raise InputError(f"{source}: {text}")
     if not timed and (head or not ascending or not (table[:, 0] % 1.0).any()):
         return None
     unit = next((SECONDS[word] for word in words[1:] if word in SECONDS), 1.0)
     names = head[1:] or [f"column {k}" for k in range(2, table.shape[1] + 1)]
-    return Record(unit * table[:, 0], table[:, 1:], names)
+    return _cleaned(table, names, unit, source)
+
+
+def need_record(path: Path) -> Record:
+    """The record in a text file. Raises InputError for a list, too."""
+    if (record := read_record(path)) is None:
+        raise InputError(f"file {str(path)!r} is no record: give 16 rows or more of a time 't' and signals")
+    return record
+
+
+def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record:
+    """The record of a table without empty columns, rows without a value and repeated rows. Raises InputError."""
+    full = ~np.isnan(np.where(np.isinf(table), np.nan, table))
+    filled = np.logical_or.reduce(full)  # a separator at the end of every line makes an empty column
+    filled[0], names = True, [name for name, has in zip(names, filled[1:].tolist(), strict=True) if has]
+    whole = np.logical_and.reduce(full[:, filled], axis=1)
+    table, place = table[whole][:, filled], np.flatnonzero(whole)
+    again = np.append(False, ~np.diff(table, axis=0).any(axis=1))
+    table, place, notes = table[~again], place[~again], list[str]()
+    for rows, text in ((int((~whole).sum()), "without a value"), (int(again.sum()), "that repeat the one before")):
+        notes += [f"Rows left out {text}: {rows}."] * bool(rows)
+    if len(table) < FEWEST or not names:
+        raise InputError(f"{source} has {len(table) * bool(names)} rows with values: give {FEWEST} or more")
+    times = table[:, 0]
+    if len(back := np.flatnonzero(np.diff(times) <= 0.0)):
+        k, remedy = int(back[0]) + 1, "give ascending times, of one run alone"
+        raise InputError(f"{source}, row {place[k] + 1}: time {times[k]:.9g} after {times[k - 1]:.9g}: {remedy}")
+    even, digit = np.polynomial.Polynomial.fit(place, times, 1)(place), _last_digit(times)
+    if 1e-6 * digit < abs(even - times).max() <= ROUNDED * digit:
+        times, notes = even, [*notes, f"Times are those of the even spacing that the file rounds to {digit:g}."]
+    return Record(unit * times, table[:, 1:], names, tuple(notes))
+
+
+def _last_digit(times: Array) -> float:
+    """A unit of the last decimal of rounded times, 0 of others."""
+    scaled = ((10.0**-d, 10.0**d * times) for d in range(DIGITS))
+    return next((digit for digit, one in scaled if abs(one - np.round(one)).max() < 1e-6), 0.0)
 
 
 def as_list(ring: RingDown, source: str) -> FrequencyList:
@@ -57,8 +115,8 @@ def as_list(ring: RingDown, source: str) -> FrequencyList:
     return FrequencyList(source=source, values=hertz, digits=np.maximum(widths / hertz, 1e-12), declared=True)
 
 
-def with_record(result: Result, ring: RingDown, record: Record) -> Result:
-    """A comparison of a list with the modes of the record that it is from."""
+def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | None = None) -> Result:
+    """A comparison of a list with the modes of the record that it is from, and what its sampling hides of a beam."""
     columns = [Column("entry"), Column("damped f", "Hz", ".7g"), Column("± (95 %)", "Hz", ".2g")]
     columns += [
         Column("damping ratio", percent=True, format=".4g"),
@@ -67,15 +125,42 @@ def with_record(result: Result, ring: RingDown, record: Record) -> Result:
     columns += [Column(f"amplitude of {name}", format=".3g") for name in record.names]
 
     def row(number: int, mode: RingMode) -> tuple[object, ...]:
-        halves = [0.5 * (high - low) for low, high in (mode.hz_interval, mode.zeta_interval)]
-        return number, mode.hz, halves[0], mode.zeta, halves[1], *mode.amplitude
+        return number, mode.hz, mode.halves[0], mode.zeta, mode.halves[1], *mode.amplitude
 
     rows = [row(number, mode) for number, mode in enumerate(ring.modes, start=1)]
-    span = f"{len(record.times)} samples over {record.times[-1] - record.times[0]:.4g} s, noise {ring.noise:.2g}"
-    notes = [f"Least squares over {span}, with offset and drift. Listed above: undamped frequencies."]
-    warnings = [*result.warnings]
-    if not ring.white:
-        warnings.append("the residuals of the record are not white: more modes or nonlinear, its intervals too short")
+    used = record.times[record.times >= ring.start]
+    span = f"{len(used)} samples over {used[-1] - used[0]:.4g} s, noise {ring.noise:.2g}"
+    notes = [f"Least squares over {span}, with offset and drift. Listed above: undamped frequencies.", *record.notes]
+    if len(used) < len(record.times):
+        notes.append(f"Free vibration from {ring.start:.4g} s on; what is before, as the rise of a load, is left out.")
+    unseen, warnings = _unseen(ring, beam) if beam else ([], [])
+    notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
+    warnings += [COLOURED] * (not ring.white)
+    if len(ring.modes) == 1 and abs(ring.modes[0].zeta) < STEADY:
+        warnings.append(f"a vibration that does not decay: compare a steady one by --drive {ring.modes[0].hz:.4g}Hz")
     modes = [mode.__dict__ | {"undamped_hz": mode.undamped_hz} for mode in ring.modes]
     tables = [*result.tables, Table("Modes of the record", columns, rows, notes)]
     return replace(result, tables=tables, warnings=warnings, data=dict(result.data) | {"record": modes})
+
+
+def _unseen(ring: RingDown, beam: Beam) -> tuple[list[str], list[str]]:
+    """(notes, warnings) on modes of a beam above half the sampling rate, which appear at lower frequencies."""
+    rate = ring.rate
+    try:
+        exact = frequencies_hz(Candidate(model=EXACT), beam, None, ALIASES).tolist()
+    except InputError:
+        return [], []
+    fast = [(mode, hz) for mode, hz in enumerate(exact, start=1) if hz > 0.5 * rate]
+    if not fast or fast[0][0] > len(ring.modes) + 1:
+        return [], []
+    warnings = []
+    for mode, hz in (one for one in fast if one[1] < 2.5 * rate):  # of faster ones the alias is uncertain
+        alias = abs(hz - rate * round(hz / rate))
+        for entry, found in enumerate(ring.modes, start=1):
+            if abs(found.hz - alias) < NEAR * hz and all(abs(found.hz / one - 1.0) > NEAR for one in exact):
+                text = f"sampled at {rate:.4g} Hz, mode {mode} of the beam ({hz:.4g} Hz) appears at {alias:.3g} Hz"
+                warnings.append(f"{text}: entry {entry} may be it, sample at {2.5 * hz:.3g} Hz or more")
+    text = (
+        f"Sampled at {rate:.4g} Hz: mode {fast[0][0]} of the beam ({fast[0][1]:.4g} Hz) and higher ones are not seen."
+    )
+    return [text], warnings

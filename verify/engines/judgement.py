@@ -15,7 +15,7 @@ from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.engines.curved_files import judge_rod, needs_rod, weight
 from verify.engines.line import Line, lines
 from verify.engines.reading import Solid, read
-from verify.engines.rules import SAME, SQUARE, Judged, half_links, judge
+from verify.engines.rules import SAME, SQUARE, Judged, clamped, elastic_clamp, half_links, judge
 from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
 from verify.engines.stiffness_law import MANY
@@ -36,8 +36,9 @@ NOTICED = 0.1
 
 def _from_wall(line: Line, beam: Beam, name: str) -> Beam:
     """The beam from the wall of a line on. Raises InputError."""
-    check_features(beam, "the comparison of a file", ("section", "bodies"))
     beam = beam.mirrored() if sum(FIXED[beam.supports[0]]) < sum(FIXED[beam.supports[1]]) else beam
+    held = clamped(beam) if elastic_clamp(beam) else beam
+    check_features(held, "the comparison of a file", ("section", "bodies"))
     if abs((length := float(line.links[:, 0].sum())) / beam.length - 1.0) > 0.01:
         remedy = ": a first link without a joint must be a body" * (length < beam.length)
         raise InputError(f"{name}: its chain is {length:.6g} m long, the beam {beam.length:.6g} m{remedy}")

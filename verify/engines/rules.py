@@ -8,6 +8,7 @@ import itertools
 from math import pi
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 
 from verify.arrays import Array
@@ -57,6 +58,8 @@ class Judged(NamedTuple):
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
     """The rules of a chain and what is wrong with it. `beam`: the one it means, in the plane of the line."""
+    if beam is not None and elastic_clamp(beam):
+        return _on_spring(line, beam, theory)
     (lengths, masses, *_), k = line.links.T, line.springs
     n, edges, held = len(k), np.append(0.0, np.cumsum(lengths)), bool(np.isnan(k[0]))
     support: Any = "clamped" if held or k[0] > 0.0 else "pinned"
@@ -93,6 +96,30 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
     return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, written(stiffness))
+
+
+def elastic_clamp(beam: Beam) -> float:
+    """Stiffness of the rotational spring, N m/rad, that holds a pinned left end and is all that is elastic; else 0."""
+    alone = beam.supports == ("pinned", "free") and len(beam.spring) == 1
+    spring = beam.spring[0] if alone else None
+    return spring.rotational if spring and not (spring.position or spring.stiffness) else 0.0
+
+
+def clamped(beam: Beam) -> Beam:
+    """The beam without its elastic clamp."""
+    return msgspec.structs.replace(beam, supports=("clamped", "free"), spring=())
+
+
+def _on_spring(line: Line, beam: Beam, theory: Any) -> Judged:
+    """The chain of a beam on a rotational spring, in series with the joint of a clamp."""
+    wall, k = elastic_clamp(beam), line.springs.copy()
+    k[0] = 1.0 / max(1.0 / k[0] - 1.0 / wall, SAME / wall)
+    found = judge(line._replace(springs=k), clamped(beam), theory)
+    springs = found.springs.copy()
+    springs[0] = 1.0 / (1.0 / springs[0] + 1.0 / wall)
+    present, correct = (rigid(line, each, beam, found.rule, theory) for each in (line.springs, springs))
+    rule = f"{found.rule}, on a spring of {wall:.6g} N m/rad"
+    return found._replace(line=line, present=present, correct=correct, springs=springs, rule=rule)
 
 
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:

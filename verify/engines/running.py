@@ -128,6 +128,8 @@ def judge_runs(
     data = {"engine": name, "step": setting.step, "limit": limit, "stable": run.stable, "substeps": run.substeps}
     good = min(0.5 * limit, *steps) if margin.level != "trusted" else inf
     data |= {"omega_max": run.omega_max, "axis": worst.axis, "accurate_steps": steps}
+    keys = "axis", "mode", "meant_hz", "file_hz", "simulated_hz", "change", "damping", "simulated_damping", "added"
+    data["modes"] = [dict(zip(keys, row, strict=True)) for row in rows]
     data["within"] = floored(good, 2) if 0.0 < good < inf else 0.0
     return Result(words, [_table(rows)], warnings=warnings, margins=[margin], data=data)
 

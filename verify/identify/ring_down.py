@@ -6,6 +6,7 @@ squares fit over all samples; modes are added while they lower Schwarz's criteri
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import hypot, log, pi, sqrt
 
@@ -20,14 +21,22 @@ MOST_MODES = 8
 """Modes that are looked for; a record of a beam rarely has more above its noise."""
 PENCIL = 600
 """Samples of the start, thinned from the record: its Hankel matrix costs their cube."""
+MANY = 3000
+"""Samples by which modes of a record of more than twice as many are counted before all are used."""
 EVEN = 1e-3
 """Largest deviation of a time from even spacing, over the spacing, that the start ignores."""
 GAIN = 10.0
 """Least fall of Schwarz's criterion by a mode: odds of 150 to 1."""
-GROWTH = 100.0
-"""Largest exponent of a trial of the fit at the end of the record: it grows past all signals without overflow."""
 FEWEST = 16
 """Samples of the shortest record."""
+GROWTH = 100.0
+"""Exponent of a growth that the least squares may try: e^100 squared is still a number."""
+GRAIN = 1e-8
+"""Amplitude of a mode over the largest of its channel, below which it is one of rounding."""
+RELEASE, SWING, CLEARER, QUIET, BRIEF = 0.9, 0.3, 0.5, 1e-3, 0.2
+"""Deflection of a beam that is released, over the largest before it swings back by SWING of the largest of all; noise
+without what is before, over that of all; noise over the range that no load leaves; damping ratio of modes that may be
+fitted to a load."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +51,12 @@ class RingMode:
     zeta_interval: tuple[float, float]
     amplitude: tuple[float, ...]
     """At the first sample, of every channel, in its unit; 0 of a constant one."""
+
+    @property
+    def halves(self) -> tuple[float, float]:
+        """Half widths of the intervals of frequency, Hz, and damping ratio."""
+        (f, g), (low, high) = self.hz_interval, self.zeta_interval
+        return 0.5 * (g - f), 0.5 * (high - low)
 
     @property
     def undamped_hz(self) -> float:
@@ -59,6 +74,10 @@ class RingDown:
     modes: tuple[RingMode, ...]
     noise: float
     white: bool
+    start: float = 0.0
+    """Time of the first sample that the fit uses, s."""
+    rate: float = np.inf
+    """Mean number of samples a second."""
 
     @property
     def hertz(self) -> Array:
@@ -70,7 +89,8 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     """Modes of a free vibration sampled at `times` (n,), s, in `signals` (n,) or (n, channels).
 
     `n_modes`: default those that the record tells from its noise. Raises InputError for fewer than 16 samples, times
-    that do not ascend, values that are not finite, and a record in which nothing rings.
+    that do not ascend, values that are not finite, and a record in which nothing rings. Rest or the rise of a load
+    before the vibration is left out where the residuals show it.
     """
     t, y = np.asarray(times, dtype=float), np.asarray(signals, dtype=float)
     y = y.reshape(len(y), -1)
@@ -80,28 +100,54 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
         raise InputError("record: give finite values at ascending times")
     if n_modes is not None:
         check_integer("n_modes", n_modes, 1, MOST_MODES)
+    if not np.ptp(y, axis=0).any():
+        raise InputError("record: its signals are constant, nothing rings")
+    whole: RingDown | InputError
+    try:
+        whole = _ring(t, y, n_modes)
+        quiet = whole.white or whole.noise < QUIET * float(np.ptp(y, axis=0).max())
+        if quiet and all(abs(mode.zeta) < BRIEF for mode in whole.modes):
+            return whole
+    except InputError as error:
+        whole = error
+    if FEWEST <= len(t) - (first := _release(y)) < len(t):
+        with suppress(InputError):
+            later = _ring(t[first:], y[first:], n_modes)
+            if isinstance(whole, InputError):
+                return later
+            clearer = later.white or later.noise < CLEARER * whole.noise
+            if clearer and (not whole.white or len(later.modes) < len(whole.modes)):
+                return later
+    if isinstance(whole, InputError):
+        raise whole
+    return whole
+
+
+def _release(y: Array) -> int:
+    """The last sample of signals (n, channels) near the peak of the first excursion to one side of the end's mean."""
+    away = (y - y[-max(len(y) // 4, 1) :].mean(axis=0)) / np.maximum(np.ptp(y, axis=0), 1e-300)
+    size = away[:, np.unravel_index(abs(away).argmax(), away.shape)[1]]
+    swings = np.sign(size) * (abs(size) > SWING * abs(size).max())
+    first = swings[np.flatnonzero(swings)[0]]
+    back = np.flatnonzero(swings == -first)
+    lobe = first * size[: back[0] if len(back) else len(size)]
+    return int(np.flatnonzero(lobe >= RELEASE * lobe.max())[-1])
+
+
+def _ring(t: Array, y: Array, n_modes: int | None) -> RingDown:
+    """Modes of signals (n, channels). Raises InputError where nothing rings."""
     scale = np.ptp(y, axis=0)
     if not scale.any():
         raise InputError("record: its signals are constant, nothing rings")
     y, moving = y[:, scale > 0.0] / scale[scale > 0.0], np.flatnonzero(scale)
     origin = t[0]
-    line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
-    best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
     poles = _strongest(t - origin, y, _pencil(t - origin, y))
-    for m in (n_modes,) if n_modes else range(1, min(MOST_MODES, len(t) // 8) + 1):
-        if len(poles) < m:
-            break
-        try:
-            fitted = _fit(t - origin, y, poles[:m])
-        except InputError:  # of too few modes the least squares may wander
-            if n_modes:
-                raise
-            continue
-        size = y.size * log(max(float((fitted.residuals**2).sum()), 1e-300)) + (2 + 2 * y.shape[1]) * m * log(y.size)
-        if size > least - GAIN and not n_modes:
-            break
-        best, least = (m, fitted), size
-    if best is None:
+    orders = range(n_modes or 1, (n_modes or min(MOST_MODES, len(t) // 8)) + 1)
+    if not n_modes and len(t) > 2 * MANY:
+        some = np.sort(np.random.default_rng(63).permutation(len(t))[:MANY])
+        if early := _order(t[some] - origin, y[some], poles, orders):
+            orders = range(min(early[0], orders.stop - 2), orders.stop)
+    if (best := _order(t - origin, y, poles, orders)) is None:
         raise InputError("record: no frequency rings in it above its noise, give a longer one or more samples")
     count, fitted = best
     sizes = np.zeros((count, len(scale)))
@@ -111,7 +157,29 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
             scale[channel] * hypot(value[f"c{c},{i}"], value[f"c{c},{count + i}"]) for i in range(count)
         ]
     modes = _modes(fitted, float(t[-1] - origin), sizes)
-    return RingDown(modes, fitted.noise * float(scale.max()), COLOURED not in fitted.rejected)
+    rate, white = (len(t) - 1) / float(t[-1] - origin), COLOURED not in fitted.rejected
+    return RingDown(modes, fitted.noise * float(scale.max()), white, float(origin), rate)
+
+
+def _order(t: Array, y: Array, poles: ComplexArray, orders: range) -> tuple[int, Fit] | None:
+    """(number of modes, fit) by Schwarz's criterion among `orders`, of one order without it; None where none is better.
+
+    Raises InputError where the fit of one order does not converge.
+    """
+    line = np.polynomial.polynomial.polyval(t, np.polynomial.polynomial.polyfit(t, y, 1)).T
+    best, least = None, y.size * log(max(float(((y - line) ** 2).sum()), 1e-300))
+    for m in (order for order in orders if order <= len(poles)):
+        try:
+            fitted = _fit(t, y, poles[:m])
+        except InputError:  # of too few modes the least squares may wander
+            if len(orders) == 1:
+                raise
+            continue
+        size = y.size * log(max(float((fitted.residuals**2).sum()), 1e-300)) + (2 + 2 * y.shape[1]) * m * log(y.size)
+        if size > least - GAIN and len(orders) > 1:
+            break
+        best, least = (m, fitted), size
+    return best
 
 
 def _pencil(t: Array, y: Array) -> ComplexArray:
@@ -161,7 +229,8 @@ def _strongest(t: Array, y: Array, poles: ComplexArray) -> ComplexArray:
 
 def _basis(t: Array, poles: ComplexArray) -> Array:
     """Decaying cosines and sines of the poles, 1 and t, (n, 2 m + 2)."""
-    waves = np.exp(np.outer(t, np.minimum(poles.real, GROWTH / t[-1]) + 1j * poles.imag))
+    powers = np.outer(t, poles)
+    waves = np.exp(np.minimum(powers.real, GROWTH) + 1j * powers.imag)
     return np.concatenate([waves.real, waves.imag, np.ones((len(t), 1)), t[:, None] / t[-1]], axis=1)
 
 
@@ -195,9 +264,9 @@ def _fit(t: Array, y: Array, poles: ComplexArray) -> Fit:
 
 
 def _modes(fitted: Fit, duration: float, sizes: Array) -> tuple[RingMode, ...]:
-    """Modes of a fit by frequency, with their amplitudes `sizes`, (modes, channels)."""
-    modes = []
-    for i, size in enumerate(sizes.tolist()):
+    """Modes of a fit above rounding by frequency, with their amplitudes `sizes`, (modes, channels)."""
+    modes, loud = [], (sizes > GRAIN * sizes.max(axis=0)).any(axis=1)
+    for i, size in ((i, sizes[i].tolist()) for i in np.flatnonzero(loud).tolist()):
         turns, ratio = fitted.estimates[f"d{i}"], fitted.estimates[f"r{i}"]
         hertz, low, high = (edge / (2.0 * pi * duration) for edge in (turns.value, *turns.interval))
         zeta, most, least = (-r / sqrt(1.0 + r * r) for r in (ratio.value, *ratio.interval))
