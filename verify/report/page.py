@@ -222,9 +222,7 @@ def _movie(movie: Movie) -> dict[str, str]:
 
 
 def _table(table: Table, links: Mapping[str, str]) -> dict[str, Any]:
-    headings, texts, n = table.headings(), table.text_rows(), range(len(table.columns))
-    words = [any(isinstance(row[i], str) for row in table.rows) for i in n]
-    widths = [max((len(row[i]) for row in texts), default=0) for i in n]
+    (headings, texts, words, widths), n = table.layout(), range(len(table.columns))
     kinds = ["n" if not words[i] else "long" if widths[i] > WIDE else "short" if widths[i] < NARROW else "" for i in n]
 
     def cell(i: int, value: Any, text: str) -> dict[str, Any]:

@@ -7,13 +7,13 @@ A `Result` holds what was computed as plain values: a summary, tables, figures, 
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 from verify.analysis.verdict import COLOURS, Margin, Verdict, verdict_of
-from verify.formatting import unit_over
+from verify.formatting import Unit, unit_over
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,24 +53,25 @@ class Table:
 
     def headings(self) -> list[str]:
         """Column names with the unit in which `text_rows` shows the values."""
-        units = ["%" if c.percent else self._scaled(i)[0] for i, c in enumerate(self.columns)]
-        return [f"{c.name}, {unit}" if unit else c.name for c, unit in zip(self.columns, units, strict=True)]
+        return [f"{c.name}, {u.name}" if u.name else c.name for c, u in zip(self.columns, self._units(), strict=True)]
 
     def text_rows(self) -> list[list[str]]:
         """The rows as text, every cell formatted as its column says."""
-        factors = [100.0 if c.percent else self._scaled(i)[1] for i, c in enumerate(self.columns)]
-        return [
-            [_cell(value, column, factor) for value, column, factor in zip(row, self.columns, factors, strict=True)]
-            for row in self.rows
-        ]
+        factors = [unit.factor for unit in self._units()]
+        return [[_cell(*cell) for cell in zip(row, self.columns, factors, strict=True)] for row in self.rows]
 
-    def _scaled(self, index: int) -> tuple[str, float]:
-        column = self.columns[index]
-        if not (column.prefix and column.unit):
-            return column.unit, 1.0
-        values = (row[index] for row in self.rows)
-        unit = unit_over((float(v) for v in values if isinstance(v, int | float)), column.unit)
-        return unit.name, unit.factor
+    def _units(self) -> Iterator[Unit]:
+        """The unit in which each column is shown."""
+        for i, column in enumerate(self.columns):
+            numbers = (float(row[i]) for row in self.rows if isinstance(row[i], int | float))
+            scaled = unit_over(numbers, column.unit) if column.prefix and column.unit else Unit(column.unit, 1.0)
+            yield Unit("%", 100.0) if column.percent else scaled
+
+    def layout(self) -> tuple[list[str], list[list[str]], list[bool], list[int]]:
+        """(headings, rows as text, whether a column has words, its width in characters)."""
+        texts, n = self.text_rows(), range(len(self.columns))
+        words = [any(isinstance(row[i], str) for row in self.rows) for i in n]
+        return self.headings(), texts, words, [max((len(row[i]) for row in texts), default=0) for i in n]
 
     def csv(self) -> str:
         """Comma-separated values in SI units with all digits."""
@@ -89,9 +90,7 @@ class Table:
         """Print it with rich. Text wraps; numbers do not: where they are too wide the columns go in several blocks."""
         from rich.table import Table as RichTable
 
-        headings, rows, n = self.headings(), self.text_rows(), range(len(self.columns))
-        words = [any(isinstance(row[i], str) for row in self.rows) for i in n]
-        widths = [max((len(row[i]) for row in rows), default=0) for i in n]
+        (headings, rows, words, widths), n = self.layout(), range(len(self.columns))
         least = [max(min(widths[i], 18) if words[i] else widths[i], *map(len, headings[i].split())) + 2 for i in n]
         keys = [0]  # leading columns that name a row stand in every block
         while (i := len(keys)) < len(n) and 2 * sum(least[: i + 1]) < console.width:

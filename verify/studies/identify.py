@@ -1,7 +1,7 @@
 """Parameters of friction or of the beam, identified from data of a scene or from synthetic data, with intervals."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import msgspec
 import numpy as np
@@ -32,7 +32,7 @@ PARAMETERS += [Column(name, format=".6g") for name in ("lower", "upper", "profil
 PARAMETERS += [Column("verdict")]
 TESTS = [Column(name, format=".3g") for name in ("noise", "degrees of freedom", "chi^2", "fit", "white")]
 RESIDUALS = "Data less fit, over the standard deviation of the noise; 95 % lie within 2 if the model holds."
-ORDERS = ("displacement", "velocity", "acceleration")
+Sensor = Literal["displacement", "velocity", "acceleration"]
 Noise = Annotated[float, Meta(gt=0, description="Standard deviation of the data, relative for frequencies and |H|.")]
 
 
@@ -68,9 +68,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     force_rate: Annotated[float, unit("N/s"), Meta(gt=0, description="Growth of the force of a breakaway, N/s.")] = 1.0
     force_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the force of H, m.")] = 0.0
     sensor_at: Annotated[float, unit("m"), Meta(ge=0, description="Position of the sensor of H, m.")] = 0.0
-    sensor: Annotated[
-        Literal["displacement", "velocity", "acceleration"], Meta(description="What the data of H divide by the force.")
-    ] = "displacement"
+    sensor: Annotated[Sensor, Meta(description="What the data of H divide by the force.")] = "displacement"
     model: Annotated[str, Meta(description="Model of the beam under a run.")] = "fem"
     count: Annotated[int, Meta(ge=1, description="Its size.")] | None = None
     profiles: Annotated[bool | None, Meta(description="Profiles; computed for wide intervals unless set.")] = None
@@ -89,10 +87,8 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         if self.what == "frequencies":
             return beam.frequencies(scene.beam, names, x)
         if self.what == "response":
-            for field in ("force_at", "sensor_at"):
-                check_number(
-                    f"identify.{field}", getattr(self, field), "metres, on the beam", at_most=scene.beam.length
-                )
+            for field, x_of in (("force_at", self.force_at), ("sensor_at", self.sensor_at)):
+                check_number(f"identify.{field}", x_of, "metres, on the beam", at_most=scene.beam.length)
             return beam.response(scene.beam, names, x, self.force_at, self.sensor_at, phase=phase)
         if scene.slider is None:
             raise InputError("slider is missing: add [slider] with mass and mu to the scene")
@@ -134,7 +130,7 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             x, y, phase = x[x != 0.0], y[x != 0.0], None if phase is None else phase[x != 0.0]
         if not np.isfinite([*x, *y, *(() if phase is None else phase)]).all() or (x < 0.0).any():
             raise InputError("identify: a value of x or y is not finite, or x is below zero, leave it out")
-        model, order = self.model_of(scene, x, phase is not None), ORDERS.index(self.sensor)
+        model, order = self.model_of(scene, x, phase is not None), get_args(Sensor).index(self.sensor)
         if self.what != "response" and (phase is not None or order):
             raise InputError(f"identify.what = {self.what!r}: its data have no phase or sensor, leave these out")
         if model.logs and (y <= 0.0).any():
@@ -167,12 +163,9 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 identified.append(f"{name} = {estimate.value:.6g} ± {half:.2g} {estimate.unit}".rstrip())
                 size = half / abs(estimate.value)
                 margins.append(Margin(name=f"95 % interval of {name}", size=size, fine=np.inf, limit=np.inf))
-            sd, ends = (
-                estimate.sd if estimate.sd < np.inf else None,
-                (*estimate.interval, *(estimate.profile or (None, None))),
-            )
+            sd, ends = estimate.sd if estimate.sd < np.inf else None, estimate.profile or (None, None)
             verdict = f"not identifiable: {estimate.reason}" if estimate.reason else "identified"
-            rows.append([name, estimate.value, estimate.unit, sd, *ends, verdict])
+            rows.append([name, estimate.value, estimate.unit, sd, *estimate.interval, *ends, verdict])
         tests = [result.noise, result.freedom, result.chi2, result.fitness, result.whiteness]
         return Result(
             summary=f"{', '.join(identified)} (95 %)." if identified and not result.rejected else "",
