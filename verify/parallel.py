@@ -19,10 +19,8 @@ from verify.errors import InputError, shown
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 VARIABLE = "VERIFY_JOBS"  # environment variable with the number of worker processes; unset: 1, of `verify` all cores
-CLIENT: ContextVar[Any] = ContextVar("client", default=None)
-"""Client of the cluster inside `with cluster(...)`."""
-PATIENCE = 30.0
-"""Time to reach a scheduler and its first worker, s."""
+CLIENT: ContextVar[Any] = ContextVar("client", default=None)  # client of the cluster inside `with cluster(...)`
+PATIENCE = 30.0  # time to reach a scheduler and its first worker, s
 ORDER = 0.2
 """Time after the death of a worker, s, in which a Ctrl-C that ended it reaches this process too, and is the error."""
 

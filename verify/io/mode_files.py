@@ -11,8 +11,7 @@ from verify.arrays import Array, ComplexArray
 from verify.errors import InputError, one_line
 from verify.files import MESH, readable
 
-UNIVERSAL = (".uff", ".unv")
-"""Suffixes of universal files."""
+UNIVERSAL = (".uff", ".unv")  # suffixes of universal files
 
 
 def is_mesh(suffix: str) -> bool:

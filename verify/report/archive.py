@@ -29,10 +29,8 @@ DATA, PAGE = "run.json", "index.html"
 ARROW = "→"
 Run = Mapping[str, Any]
 """Data of a run (`report.summary.run_data`)."""
-KEEP = 5
-"""Saved runs of one name."""
-DEEPEST = 50
-"""Levels of inputs that are compared one by one, five times those of a scene."""
+KEEP = 5  # Saved runs of one name
+DEEPEST = 50  # levels of inputs that are compared one by one, five times those of a scene
 _GATE = msgspec.defstruct(
     "Gate", [("id", str), ("passed", bool | None), ("value", float | str | dict | None), ("expected", str | None)]
 )
@@ -40,8 +38,7 @@ _VERDICT = msgspec.defstruct("Verdict", [("level", str), ("headline", str)])
 _RUN = msgspec.defstruct(
     "Run",
     [("report", str), ("verdict", _VERDICT), ("gates", list[_GATE]), ("inputs", dict), ("environment", dict)],  # type: ignore[valid-type]
-)
-"""What is compared; other keys may be beside them."""
+)  # what is compared; other keys may be beside them
 _TIME = re.compile(r"\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2}-\d{6}")
 
 

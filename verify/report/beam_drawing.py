@@ -13,13 +13,10 @@ from verify.settings import DRIVE_UNITS
 
 WIDTH, NARROW = 8.4, 4.2
 """Width of the drawing, inches: on a page, and on one of a telephone, where letters of the other would be too small."""
-EDGE = 0.1
-"""Margin at each end of the beam over the width of the drawing."""
+EDGE = 0.1  # margin at each end of the beam over the width of the drawing
 BODY, SLIDER, FORCE, SPRING, SOFT = MODEL_COLORS["segment"], MODEL_COLORS["fem"], "#cc3f76", "#2a9d5c", "#7d8590"
-THINNEST, THICKEST = 0.10, 0.34
-"""Drawn thickness of sections, inches."""
-LETTER, ROW = 0.078, 0.17
-"""Width of a character and height of a row of text, inches."""
+THINNEST, THICKEST = 0.10, 0.34  # drawn thickness of sections, inches
+LETTER, ROW = 0.078, 0.17  # width of a character and height of a row of text, inches
 ELECTRICAL = ("voltage", "current")
 DEVICE_UNITS = {"dashpot": "N s/m", "stiffness": "N/m", "mass": "kg", "rotational_dashpot": "N m s"}
 DEVICE_UNITS |= {"rotational": "N m/rad", "rotary_inertia": "kg m²", "amplitude": "N"}

@@ -21,22 +21,15 @@ if TYPE_CHECKING:
     from verify.report.archive import Saved
     from verify.scene.run import RunResult
 
-LONG = 30
-"""Rows beyond which a table is folded."""
-DENSE = 6
-"""Columns beyond which a table has small print."""
-LEVELS = verdict.LEVELS[::-1]
-"""Levels of a verdict, the worst first."""
+LONG = 30  # rows beyond which a table is folded
+DENSE = 6  # columns beyond which a table has small print
+LEVELS = verdict.LEVELS[::-1]  # levels of a verdict, the worst first
 CANNOT = "cannot run"
 MARKS = dict.fromkeys((LEVELS[0], "FAIL", CANNOT), "fail") | dict.fromkeys((LEVELS[2], "pass"), "pass")
-MARKS[LEVELS[1]] = "warn"
-"""Class of a cell with this text."""
-SPEEDS = "Speed of the slider"
-"""Title of a table that follows the verdict, whichever study it belongs to."""
-WORST, REST = 3, "Further margins"
-"""Margins that are not folded, and the title of the others."""
-WIDE, NARROW = 40, 22
-"""Characters of a column of text beyond which it wraps early, and below which it does not wrap."""
+MARKS[LEVELS[1]] = "warn"  # class of a cell with this text
+SPEEDS = "Speed of the slider"  # title of a table that follows the verdict, whichever study it belongs to
+WORST, REST = 3, "Further margins"  # margins that are not folded, and the title of the others
+WIDE, NARROW = 40, 22  # characters of a column of text beyond which it wraps early, and below which it does not wrap
 
 
 @dataclass(frozen=True)
@@ -45,17 +38,13 @@ class Section:
 
     id: str
     title: str
-    finding: str = ""
-    """The result in a sentence, which follows the verdict with a link to the section."""
-    caveats: Sequence[tuple[str, str, str]] = ()
-    """(title of a section, its id, sentence)."""
+    finding: str = ""  # the result in a sentence, which follows the verdict with a link to the section
+    caveats: Sequence[tuple[str, str, str]] = ()  # (title of a section, its id, sentence)
     figures: Sequence[Figure] = ()
-    condition: str = ""
-    """Condition of all figures, a part of their captions."""
+    condition: str = ""  # condition of all figures, a part of their captions
     movies: Sequence[Movie] = ()
     tables: Sequence[Table] = ()
-    links: Mapping[str, str] = field(default_factory=dict)
-    """Addresses by the text of a table cell that becomes a link."""
+    links: Mapping[str, str] = field(default_factory=dict)  # addresses by the text of a table cell that becomes a link
     code: str = ""
     folded: bool = False
 

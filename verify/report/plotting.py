@@ -20,8 +20,7 @@ MODEL_COLORS = {"analytic": "#7d8590", "segment": "#2f80ed", "fem": "#d96c05", "
 """Colour of each model, the same in all charts; every one has a contrast of 3:1 on white and on dark."""
 CYCLE = ("#8f5bd1", "#cc3f76", "#008f8f", "#a67c00", "#9a6a45", "#5f7fa8", "#4f9a34", "#b3559f")
 """Colours of lines that belong to no model."""
-MARKERS = "osD^vPX*"
-"""Markers of curves by colour, in the order in which they are drawn."""
+MARKERS = "osD^vPX*"  # markers of curves by colour, in the order in which they are drawn
 INK, GRID, PAPER, EVEN = "#010203", "#d0d4da", "#fefdfc", "#7f8388"
 """Text and axes, grid, background of legends; ink of movies, which reads on light and on dark."""
 VARIABLES = {INK: "currentColor", "#000000": "currentColor", GRID: f"var(--grid, {GRID})", PAPER: "var(--card, #fff)"}

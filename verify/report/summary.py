@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from verify.report.archive import Saved
     from verify.scene.run import RunResult
 
-LONG = 30
-"""Rows of a table beyond which its title stands for it."""
+LONG = 30  # rows of a table beyond which its title stands for it
 VERDICTS = {True: "pass", False: "FAIL", None: "skipped"}
 
 

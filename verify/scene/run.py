@@ -52,8 +52,7 @@ class PlanRow(msgspec.Struct, frozen=True):
     what: str
     kind: str
     runs: bool
-    why: str = ""
-    """Why it is skipped; of a gate that runs its quantity."""
+    why: str = ""  # why it is skipped; of a gate that runs its quantity
 
 
 class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -27,12 +27,9 @@ if TYPE_CHECKING:
     from verify.motor.curves import TimeConstant, Transient
     from verify.motor.steady_state import MotorCase, SteadyState
 
-SEARCH = 8
-"""Steady states of the search for the no-load speed, most of them near the root."""
-LEAST = 96
-"""Drive periods of the shortest steady state, and of the shortest free run."""
-TIME_CONSTANTS = 8.0
-"""Shown of starting, stopping and reversing."""
+SEARCH = 8  # steady states of the search for the no-load speed, most of them near the root
+LEAST = 96  # Drive periods of the shortest steady state, and of the shortest free run
+TIME_CONSTANTS = 8.0  # shown of starting, stopping and reversing
 SPEED = ("speed", "m/s")
 AT_SPEED = "Mean friction force along +x on the slider at a prescribed speed and fixed position. Dashed: mu N."
 POWERED = "Force times speed; below zero the load drives the motor."
