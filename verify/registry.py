@@ -14,8 +14,7 @@ class Registry(Mapping[str, T], Generic[T]):
 
     `what` is a member's name in messages. Members of this package are `members`, objects with a `name`, and `homes`,
     'module:attribute' by name; others come from entry points of `group`, which are looked up for an unknown name or
-    where all members are listed. `refuses` returns what is wrong with a member of another package, '' if nothing. A
-    class that is imported is called to make the member unless `classes`.
+    where all members are listed. `refuses` returns what is wrong with a member of another package, '' if nothing.
     """
 
     def __init__(
@@ -25,9 +24,8 @@ class Registry(Mapping[str, T], Generic[T]):
         members: Iterable[T] = (),
         homes: Mapping[str, str] | None = None,
         refuses: Callable[[T], str] = lambda member: "",
-        classes: bool = False,
     ) -> None:
-        self._what, self._group, self._refuses, self._classes = what, group, refuses, classes
+        self._what, self._group, self._refuses = what, group, refuses
         self._members: dict[str, Any] = {member.name: member for member in members} | dict(homes or {})  # type: ignore[attr-defined]
         self._unusable: dict[str, str] | None = None
         self.built_in = tuple(self._members)
@@ -56,7 +54,7 @@ class Registry(Mapping[str, T], Generic[T]):
         if name not in self:
             raise KeyError(name)
         if isinstance(home := self._members[name], str):
-            self._members[name] = self._import(home)
+            self._members[name] = _import(home)
         member: T = self._members[name]
         return member
 
@@ -83,8 +81,8 @@ class Registry(Mapping[str, T], Generic[T]):
             if point.name in self._members:
                 continue
             try:
-                member = self._import(point.value)
-                if not self._classes and getattr(member, "name", point.name) != point.name:
+                member = _import(point.value)
+                if getattr(member, "name", point.name) != point.name:
                     raise InputError(f"it is no {self._what} of that name")
                 if why := self._refuses(member):
                     raise InputError(f"it {why}")
@@ -97,7 +95,7 @@ class Registry(Mapping[str, T], Generic[T]):
                     "package or uninstall it"
                 )
 
-    def _import(self, home: str) -> T:
-        module, _, attribute = home.partition(":")
-        imported: Any = getattr(import_module(module), attribute)
-        return imported() if isinstance(imported, type) and not self._classes else imported  # type: ignore[no-any-return]
+
+def _import(home: str) -> Any:
+    module, _, attribute = home.partition(":")
+    return getattr(import_module(module), attribute)

@@ -26,7 +26,6 @@ MODELS: Registry[type[BeamModel]] = Registry(
         "fem": "verify.fem_beam:HermiteModel",
     },
     refuses=_problem_of,
-    classes=True,
 )
 """Classes; `MODELS.named(name).build(beam, count, **settings)` is the model of a beam."""
 

@@ -49,9 +49,8 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 OWN: tuple[str, ...] = ("spectrum", "convergence", "wave", "motion", "motor", "control", "identify")
 OWN += ("large-motion", "claims", "sweep", "optimise", "sensitivity")
 HOMES = {name: f"verify.studies.{name.replace('-', '_')}:{name.title().replace('-', '')}" for name in OWN}
-STUDIES: Registry[type[Study]] = Registry(
-    "study", "verify.studies", homes=HOMES, classes=True
-)  # study classes by the name of their section, in the order in which they run
+STUDIES: Registry[type[Study]] = Registry("study", "verify.studies", homes=HOMES)
+"""Study classes by the name of their section, in the order in which they run."""
 
 
 def studies_of(scene: Scene) -> list[tuple[str, Study]]:
