@@ -6,7 +6,7 @@ Results are those of a serial evaluation, in the same order.
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Executor
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
 from threading import Thread
@@ -144,8 +144,6 @@ def completed(
         yield i, _result(function, item)
     if executor is None or here == len(todo):
         return
-    from concurrent.futures import as_completed
-
     futures = {executor.submit(_result, function, item): i for i, item in enumerate(todo[here:], here)}
     try:
         for future in as_completed(futures):

@@ -1,7 +1,7 @@
 """What is exported of a scene as arrays: its modes, its driven wave over a period, its motion in time."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -15,10 +15,8 @@ from verify.errors import InputError
 from verify.linear.registry import MODELS
 from verify.quantities.slider import TimeOptions, motion_arguments
 from verify.quantities.waves import FieldOptions, driven_case
+from verify.scene.model import Scene
 from verify.waves.driven_case import driven
-
-if TYPE_CHECKING:
-    from verify.scene.model import Scene
 
 MODES, EXACT = 10, 201  # default number of modes, and points of the exact beam
 PHASES, INSTANTS = 36, 101  # default number of steps of a period and of a motion
@@ -55,7 +53,7 @@ class Dataset:
     histories: dict[str, Array] = field(default_factory=dict)
 
 
-def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
+def dataset(scene: Scene, what: str, request: Request) -> Dataset:
     """Modes, wave or motion of a scene by one model. Raises InputError where the scene lacks what is needed."""
     model = MODELS.named(request.model)
     study = scene.studies.get({"modes": "spectrum"}.get(what, what))
@@ -75,7 +73,7 @@ def dataset(scene: "Scene", what: str, request: Request) -> Dataset:
     return Dataset(what=what, links=model.name == "segment", x=x, **values)
 
 
-def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+def _modes(scene: Scene, cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     n = request.mode or MODES
     if count is not None:
         if request.mode is None:
@@ -95,7 +93,7 @@ def _modes(scene: "Scene", cache: SolutionCache, request: Request, count: int | 
     }
 
 
-def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+def _wave(scene: Scene, cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     if scene.drive is None or not scene.forces:
         raise InputError("what = 'wave': the scene has no drive with forces, add [drive] or export modes")
     field_ = driven(driven_case(scene, FieldOptions(model=request.model, count=count)), cache)
@@ -111,7 +109,7 @@ def _wave(scene: "Scene", cache: SolutionCache, request: Request, count: int | N
     }
 
 
-def _motion(scene: "Scene", cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
+def _motion(scene: Scene, cache: SolutionCache, request: Request, count: int | None, x: Array) -> dict[str, Any]:
     if scene.motion is None:
         raise InputError("what = 'motion': the scene has no [motion], add it or --set motion.duration=1e-3")
     if scene.devices:

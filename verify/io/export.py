@@ -15,13 +15,12 @@ from verify.formatting import unit_of
 from verify.io.data import Dataset, Request, dataset
 from verify.report.plotting import INK, MODEL_COLORS, MovingLine, animation, drawn, movie_frames, style
 from verify.report.result import Column, Movie, Table, to_json
+from verify.scene.model import Scene
 from verify.studies.convergence import Convergence
 from verify.validation import check_choice
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from verify.scene.model import Scene
 
 DATA, PICTURES = ("modes", "wave", "motion"), ("png", "gif", "webp")
 CHART = "convergence"
@@ -38,7 +37,7 @@ TYPES = {
 }  # what a file type holds
 
 
-def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
+def write(scene: Scene, path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:
     """Write modes, wave, motion or the chart of convergence to a file, whole or not at all; returns what was written.
 
     Raises InputError for an unknown file type, for content that it does not hold, and where the file cannot be written.
@@ -65,7 +64,7 @@ def write(scene: "Scene", path: Path, request: Request, progress: Callable[[str]
     return data_.title
 
 
-def _convergence(scene: "Scene", path: Path, request: Request, progress: Callable[[str], None]) -> str:
+def _convergence(scene: Scene, path: Path, request: Request, progress: Callable[[str], None]) -> str:
     """The chart of the frequency errors over N, of the scene's [convergence] or its defaults, or of one mode."""
     if request.count is not None or request.samples is not None:
         raise InputError(f"what = {CHART!r}: count and samples do not apply, --set convergence.counts=20,40,80")
@@ -136,7 +135,7 @@ def _arrays(data: Dataset, path: Path) -> None:
         np.savez_compressed(stream, title=np.array(data.title), **arrays)
 
 
-def _picture(scene: "Scene", data: Dataset, path: Path, request: Request) -> None:
+def _picture(scene: Scene, data: Dataset, path: Path, request: Request) -> None:
     """Write a picture (png) or a movie of a dataset. Raises InputError for a beam at rest."""
     kind, deflection = path.suffix.lower().removeprefix("."), data.deflection
     if data.what == "modes":  # which swings over a period

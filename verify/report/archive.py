@@ -29,7 +29,7 @@ DATA, PAGE = "run.json", "index.html"
 ARROW = "→"
 Run = Mapping[str, Any]
 """Data of a run (`report.summary.run_data`)."""
-KEEP = 5  # Saved runs of one name
+KEEP = 5  # saved runs of one name
 DEEPEST = 50  # levels of inputs that are compared one by one, five times those of a scene
 _GATE = msgspec.defstruct(
     "Gate", [("id", str), ("passed", bool | None), ("value", float | str | dict | None), ("expected", str | None)]

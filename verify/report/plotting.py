@@ -8,7 +8,10 @@ import io
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from html import escape
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,7 +83,6 @@ def distinguish(ax: "Axes", size: tuple[float, float]) -> None:
     Line styles keep the meaning that a study assigns to them. Where the ends of curves coincide, or a legend has
     entries that are no curves, the names stand in a legend above the axes.
     """
-    import numpy as np
     from matplotlib.colors import to_hex
 
     curves: list[Any] = [line for line in ax.lines if line.get_linestyle() != "None" and line.get_gid() != "guide"]
@@ -124,8 +126,6 @@ def figure_files(figure: "Figure", dpi: float = 160.0) -> tuple[str, bytes]:
     Colours of text and axes in the SVG follow the page: they are CSS variables. Ids are prefixed with the figure's id,
     so that several stand on one page. Its role is img, its accessible name the title and caption.
     """
-    from html import escape
-
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from PIL import Image
 
@@ -169,7 +169,6 @@ def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str 
     """The movie's pictures (pillow, RGBA), of which only the artists that move are drawn anew."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as MatplotlibFigure
-    from numpy import asarray
     from PIL import Image
 
     pictures: list[Any] = []
@@ -186,7 +185,7 @@ def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str 
             canvas.restore_region(still)
             for artist in update(frame):
                 canvas.figure.draw_artist(artist)
-            pictures.append(Image.fromarray(asarray(canvas.buffer_rgba()).copy()))
+            pictures.append(Image.fromarray(np.asarray(canvas.buffer_rgba()).copy()))
     return pictures
 
 

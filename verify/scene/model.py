@@ -342,7 +342,7 @@ class Scene(NamedBeam, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return tuple(device.on(self.beam) for device in self.drive.device) if self.drive else ()
 
     @property
-    def shunts(self) -> "tuple[tuple[float, Load], ...]":
+    def shunts(self) -> tuple[tuple[float, Load], ...]:
         """(position from the left end, m, load) of the drive's shunts."""
         return tuple(shunt.on(self.beam) for shunt in self.drive.shunt) if self.drive else ()
 

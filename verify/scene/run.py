@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from math import hypot, isfinite
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import msgspec
 
@@ -13,13 +13,11 @@ from verify.analysis.verdict import Margin, Verdict, verdict_of, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError, raise_all
 from verify.quantities.base import QUANTITIES, evaluate
+from verify.report.result import Result
 from verify.scene.load import load_scene, study_errors
 from verify.scene.model import Complex, Gate, Scene
 from verify.studies.base import STUDIES, result_of, studies_of
 from verify.studies.tables import premises
-
-if TYPE_CHECKING:
-    from verify.report.result import Result
 
 ADD = "add a gate or a study, see docs/your-beam.md"
 Progress: TypeAlias = Callable[[str], None]
@@ -61,7 +59,7 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     scene: Scene
     gates: tuple[GateResult, ...]
     """In the order of the file, skipped ones included."""
-    results: "dict[str, Result]"
+    results: dict[str, Result]
     """Results of the studies by the names of their sections."""
     skipped: tuple[PlanRow, ...]
     """Gates and studies that did not run, with the reason."""

@@ -10,13 +10,12 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
 from verify.registry import Registry
 from verify.report.result import Result
+from verify.scene.model import Scene as Scene  # noqa: PLC0414
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes  # noqa: PLC0414
-
-    from verify.scene.model import Scene as Scene  # noqa: PLC0414
-else:  # stand-ins for annotations: scenes import studies, and charts alone load matplotlib
-    Axes = Scene = Any
+else:  # a stand-in for annotations: charts alone load matplotlib
+    Axes = Any
 
 Progress: TypeAlias = Callable[[str], None]  # called with the name of each step before it starts
 

@@ -18,12 +18,12 @@ THIN, BROAD = 1.4, 4.0  # widths of lines of discrete models, and of the exact b
 MOST_POINTS = 2000
 
 
-def si(name: str, unit: str, form: str = ".4g") -> "Column":
+def si(name: str, unit: str, form: str = ".4g") -> Column:
     """A column of values that are shown with the SI prefix that suits the largest."""
     return Column(name, unit, form, prefix=True)
 
 
-def percent(name: str, form: str = "+.4g") -> "Column":
+def percent(name: str, form: str = "+.4g") -> Column:
     """A column of ratios that are shown in per cent."""
     return Column(name, format=form, percent=True)
 
@@ -50,7 +50,7 @@ def model_style(model: str) -> dict[str, Any]:
     return {"color": color, "linewidth": THIN if MODELS[model].sized else BROAD}
 
 
-def variant_colors(variants: "tuple[Variant, ...]") -> "dict[Variant, str]":
+def variant_colors(variants: tuple[Variant, ...]) -> dict[Variant, str]:
     """The colour of a model for its first variant, others from the colour cycle."""
     colors: dict[Variant, str] = {}
     for variant in variants:

@@ -11,9 +11,12 @@ from verify.analysis.plausibility import unit_margins
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, void
 from verify.arrays import Array
+from verify.dynamics.arguments import Keep
+from verify.dynamics.simulate import simulate
 from verify.errors import InputError
 from verify.identify import beam, friction
 from verify.identify.fit import Fit, Model, fit
+from verify.quantities.slider import TimeOptions, motion_arguments
 from verify.report.result import Column, Figure, Result, Table
 from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import line_chart, plot_lines
@@ -98,10 +101,6 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             return friction.breakaway(scene.slider, x, self.force_rate)
 
         def simulated(slider: Any, until: float) -> Any:
-            from verify.dynamics.arguments import Keep
-            from verify.dynamics.simulate import simulate
-            from verify.quantities.slider import TimeOptions, motion_arguments
-
             arguments = motion_arguments(scene, TimeOptions(model=self.model, count=self.count, time=until))
             samples = int(16.0 * until * arguments["excitation"].frequency_hz) + 2
             return simulate(**arguments, slider=slider, keep=Keep(samples=samples))

@@ -1,7 +1,7 @@
 """The slider of a scene in time: displacement, velocity, friction on every model, validity margins."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from msgspec import Meta
@@ -10,7 +10,11 @@ from msgspec.structs import replace
 from verify.analysis.margins import against_exact, marked, run_margins, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of
+from verify.analytic_modes import check_in_time
 from verify.dynamics.arguments import Keep, Step
+from verify.dynamics.result import Motion as Run
+from verify.dynamics.simulate import simulate
+from verify.dynamics.step_control import exchanged
 from verify.errors import InputError
 from verify.formatting import unit_over
 from verify.linear.positions import SLACK
@@ -24,9 +28,6 @@ from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import Line, beam_movie, line_chart, model_style, percent, si, sized_title, table
 from verify.studies.tables import reduction_margins, scene_margins
 from verify.validation import Relative, check_number, unit
-
-if TYPE_CHECKING:
-    from verify.dynamics.result import Motion as Run
 
 STEPS_PER_PERIOD = 128
 MOST_SAMPLES = 100_000
@@ -90,9 +91,6 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Simulate the slider on every model. Raises InputError, also without a slider."""
-        from verify.analytic_modes import check_in_time
-        from verify.dynamics.simulate import simulate
-
         slider = scene.slider
         if slider is None:
             raise InputError("motion: its study moves a slider, add [slider], or measure a quantity in time")
@@ -139,8 +137,6 @@ def readings(scene: Scene) -> Table:
 
     A point on the surface by both kinematics, a long run, and a contact that may open: the scene's, or a hard one.
     """
-    from verify.dynamics.simulate import simulate
-
     assert scene.slider is not None
     mounted = scene.slider
     point = replace(mounted, contact=None, foot=(), external_force=0.0, preload_stiffness=0.0)
@@ -168,7 +164,7 @@ def readings(scene: Scene) -> Table:
     return Table("Speed of the slider", [*columns, Column("verdict"), Column("worst margin")], rows, [note])
 
 
-def _figures(runs: "dict[str, Run]", chain: "Run", count: int, margins: list[Margin]) -> list[Figure]:
+def _figures(runs: dict[str, Run], chain: Run, count: int, margins: list[Margin]) -> list[Figure]:
     """Displacement and friction on each model; velocities of the slider and of the chain's surface."""
     surface = ("surface under the slider", chain.times, chain.surface_speed, {"color": "#7d8590"})
     velocities = [surface, ("slider", chain.times, chain.speed, {"color": SLIDER})]
@@ -188,17 +184,15 @@ def _figures(runs: "dict[str, Run]", chain: "Run", count: int, margins: list[Mar
     ]
 
 
-def _title(run: "Run") -> str:
+def _title(run: Run) -> str:
     return sized_title(run.model, run.count)
 
 
-def _table(runs: "dict[str, Run]") -> Table:
-    from verify.dynamics.step_control import exchanged
-
+def _table(runs: dict[str, Run]) -> Table:
     exact, all_runs = runs["analytic"].displacement if "analytic" in runs else 0.0, runs.values()
     moves = any(abs(exact) > SLACK * run.end.beam.length for run in all_runs)
 
-    def imbalance(run: "Run") -> float | None:
+    def imbalance(run: Run) -> float | None:
         return abs(run.energy.residual) / exchanged(run) if run.energy and exchanged(run) else None
 
     results = {
@@ -215,7 +209,7 @@ def _table(runs: "dict[str, Run]") -> Table:
     return table("Slider on each model", all_runs, results)
 
 
-def _movie(run: "Run") -> Callable[[Axes], Any]:
+def _movie(run: Run) -> Callable[[Axes], Any]:
     """The links with the slider on them, and the friction on it as a bar."""
     kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
     time, length = unit_over([float(run.times[-1])], "s"), float(run.points[-1])

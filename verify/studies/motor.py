@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import copysign, inf
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from msgspec import Meta
@@ -11,9 +11,12 @@ from msgspec.structs import replace
 from verify.analysis.margins import marked, sufficient_count
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, verdict_of, void
+from verify.dynamics.contact_assembly import check_sliders
 from verify.errors import InputError
 from verify.formatting import unit_of, with_error, with_unit
 from verify.linear.registry import MODELS
+from verify.motor import curves
+from verify.motor.steady_state import PERIODS, MotorCase, SteadyState, seconds_per_period, steady_state, surface_motion
 from verify.quantities.motor import MotorOptions, cached
 from verify.quantities.options import ModelName
 from verify.report.result import Column, Figure, Result, Table
@@ -23,12 +26,8 @@ from verify.studies.charts import Columns, Line, line_chart, model_style, percen
 from verify.studies.motion import Damping, check_driven, check_start, readings
 from verify.studies.tables import path_margins, reduction_margins, scene_margins
 
-if TYPE_CHECKING:
-    from verify.motor.curves import TimeConstant, Transient
-    from verify.motor.steady_state import MotorCase, SteadyState
-
 SEARCH = 8  # steady states of the search for the no-load speed, most of them near the root
-LEAST = 96  # Drive periods of the shortest steady state, and of the shortest free run
+LEAST = 96  # drive periods of the shortest steady state, and of the shortest free run
 TIME_CONSTANTS = 8.0  # shown of starting, stopping and reversing
 SPEED = ("speed", "m/s")
 AT_SPEED = "Mean friction force along +x on the slider at a prescribed speed and fixed position. Dashed: mu N."
@@ -61,8 +60,6 @@ class Allowance:
     @property
     def most(self) -> int:
         """Most periods of the next steady state."""
-        from verify.motor.steady_state import PERIODS
-
         return int(min(PERIODS, max(self.left / max(self.figures, 1), LEAST)))
 
     def text(self) -> str:
@@ -75,16 +72,16 @@ class Allowance:
 class Field:
     """One model under the slider, SI; `stop` is None where the beam would ring on; `times` of approaches."""
 
-    case: "MotorCase"
+    case: MotorCase
     name: str
-    curve: "list[SteadyState]"  # From standstill to the crest speed, in the direction of the force
+    curve: list[SteadyState]  # from standstill to the crest speed, in the direction of the force
     no_load: float | None
-    free: "Transient"
-    stop: "Transient | None"
-    reversal: "Transient | None"
-    times: "dict[str, TimeConstant]"
-    missing: list[str]  # Why figures are not available, in words
-    longer: str  # The remedy where `seconds` limits the means, else empty
+    free: curves.Transient
+    stop: curves.Transient | None
+    reversal: curves.Transient | None
+    times: dict[str, curves.TimeConstant]
+    missing: list[str]  # why figures are not available, in words
+    longer: str  # the remedy where `seconds` limits the means, else empty
 
 
 class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -114,8 +111,6 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: Scene) -> None:
         """Raise InputError without forces or a slider with contact, or where a foot is not on the beam."""
-        from verify.dynamics.contact_assembly import check_sliders
-
         check_driven("motor", scene)
         if scene.slider is None or scene.slider.contact is None:
             raise InputError("motor: its slider may leave the beam, add [slider] with slider.contact")
@@ -146,10 +141,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             margins=margins,
         )
 
-    def _allowance(self, case: "MotorCase", name: str) -> Allowance:
+    def _allowance(self, case: MotorCase, name: str) -> Allowance:
         """The share of one model in `seconds`, by the measured time of a period. Raises InputError below the least."""
-        from verify.motor.steady_state import seconds_per_period
-
         cost, figures, share = seconds_per_period(case), self.speeds + SEARCH, self.seconds / len(self.models)
         if share < (needed := cost * (figures * LEAST + self.periods)):
             raise InputError(
@@ -158,11 +151,8 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             )
         return Allowance(cost, share / cost - 3 * self.periods, figures, self.periods)
 
-    def _field(self, case: "MotorCase", like: "list[SteadyState]", cache: SolutionCache, progress: Progress) -> Field:
+    def _field(self, case: MotorCase, like: list[SteadyState], cache: SolutionCache, progress: Progress) -> Field:
         """Prescribed speeds, free run, stop and reversal on one model. Raises InputError."""
-        from verify.motor import curves
-        from verify.motor.steady_state import PERIODS, crest_speed, steady_state
-
         name = sized_title(case.model, case.count)
         progress(f"time per period, {name}")
         allowed = self._allowance(case, name)
@@ -172,7 +162,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
         step("stall force")
         still: SteadyState = cached(cache, steady_state, case, 0.0, allowed.most)
-        crest = copysign(crest_speed(case), still.means.force)
+        crest = copysign(surface_motion(case)[1], still.means.force)
         speeds = [at.speed for at in like] or [crest * k / (self.speeds - 1) for k in range(self.speeds)]
         curve = [still]
         for speed in speeds[1:]:
@@ -197,7 +187,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             periods = int(min(2.0 * TIME_CONSTANTS * scale + 2.0, self.periods))
             stop = None if rings else curves.stop(case, free, periods)
             reversal = curves.reversal(case, free, periods)
-        times: dict[str, TimeConstant] = {}
+        times: dict[str, curves.TimeConstant] = {}
         if free.converged or begin.missing == "overshoot":
             times["start"] = begin
         if free.converged and stop:
@@ -218,7 +208,7 @@ def _with_error(name: str, value: float, error: float, symbol: str) -> str:
     return text if abs(value) > error else f"{text} (not distinguishable from zero)"
 
 
-def _unsettled(curve: "list[SteadyState]", longer: str) -> list[str]:
+def _unsettled(curve: list[SteadyState], longer: str) -> list[str]:
     """A warning on means that have not converged; none where all have."""
     off = [at for at in curve if not at.converged()]
     figures = ", ".join(dict.fromkeys(figure for at in off for figure in at.not_converged))
@@ -229,12 +219,10 @@ def _unsettled(curve: "list[SteadyState]", longer: str) -> list[str]:
 
 def _convergence(field: Field) -> list[Margin]:
     """Margins of a free run and of a stall force that have not converged, with the means so far."""
-    from verify.motor.curves import REASONS
-
     found, free, still = list[Margin](), field.free, field.curve[0]
     if not free.converged and free.run.statistics.finished:
         so_far = f"mean so far {with_error(1e3 * free.speed, 1e3 * free.error, '+')} mm/s, {field.name}"
-        found.append(void("the free run", f"{REASONS['free speed']} ({so_far})"))
+        found.append(void("the free run", f"{curves.REASONS['free speed']} ({so_far})"))
     if not still.converged("force"):
         so_far = f"{with_error(still.means.force, still.errors.force, '+')} N"
         found.append(
@@ -252,8 +240,6 @@ def _convergence(field: Field) -> list[Margin]:
 
 def _margins(fields: list[Field], scene: Scene, cache: SolutionCache) -> list[Margin]:
     """Margins of the scene at the drive, free runs, and figures that have not converged."""
-    from verify.motor.steady_state import surface_motion
-
     case = fields[0].case
     sizes = [(field.case.model, field.case.count) for field in fields]
     runs, wave = [(field.name, field.free.run) for field in fields], surface_motion(case)[0]
@@ -267,8 +253,6 @@ def _margins(fields: list[Field], scene: Scene, cache: SolutionCache) -> list[Ma
 
 
 def _tables(fields: list[Field]) -> list[Table]:
-    from verify.motor.steady_state import surface_motion
-
     def last(field: Field, share: str) -> float:
         return float(getattr(field.free.run, share)[-field.free.last :].mean())
 
@@ -316,12 +300,12 @@ def _tables(fields: list[Field]) -> list[Table]:
         Column("converged"): lambda row: row[1].converged(),
     }
     rows = [(field.name, at) for field in fields for at in field.curve]
-    curves = table("Force at prescribed speeds, slider at a fixed position", rows, curve)
+    forces = table("Force at prescribed speeds, slider at a fixed position", rows, curve)
     titles = "Speeds and stall force", "Power and efficiency", "Contact and time constants"
-    return [*map(table, titles, (fields,) * 3, (speed, powers, times), NOTES), curves]
+    return [*map(table, titles, (fields,) * 3, (speed, powers, times), NOTES), forces]
 
 
-def _if(at: "SteadyState", value: float | None, *figures: Any) -> float | None:
+def _if(at: SteadyState, value: float | None, *figures: Any) -> float | None:
     """A value of a steady state whose force, and these figures, have converged."""
     return value if at.converged("force", *figures) else None
 

@@ -92,7 +92,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
                 changes["plate"] = [plate_error(cache.beam, mode) for mode in numbers]
         return changes
 
-    def _shapes(self, cache: SolutionCache, variants: tuple[Variant, ...], count: int) -> "list[Figure]":
+    def _shapes(self, cache: SolutionCache, variants: tuple[Variant, ...], count: int) -> list[Figure]:
         """First, middle and last mode above one another; no figure where exact shapes are not available."""
         theory = theory_of(variants[0].settings)
         chosen = sorted({1, (self.modes + 1) // 2, self.modes})

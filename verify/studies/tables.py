@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import inf, isfinite
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import msgspec
 from msgspec.structs import replace
@@ -21,13 +21,11 @@ from verify.analysis.verdict import Margin
 from verify.errors import InputError, near_name
 from verify.estimate import as_plain
 from verify.linear.registry import EXACT, MODELS
+from verify.problem.slider import Slider
 from verify.quantities.base import QUANTITIES, TABLES, evaluate
 from verify.scene.load import scene_from
 from verify.studies.base import Scene
 from verify.studies.claims import computed
-
-if TYPE_CHECKING:
-    from verify.problem.slider import Slider
 
 CREST_SPREAD = 2.0, 25.0
 """Standing-wave ratios up to which a crest speed is that of all crests, and up to which it is one under a condition."""
@@ -151,7 +149,7 @@ def scene_margins(
     *,
     by: Any = None,
     driven: bool = True,
-    slider: "Slider | None" = None,
+    slider: Slider | None = None,
     **at: Any,
 ) -> list[Margin]:
     """`result_margins` of a scene with its exact steady motion by the options of a drive; none at a resonance.

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 from msgspec import Meta
@@ -13,6 +13,7 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import not_default
 from verify.analysis.verdict import Margin, verdict_of
 from verify.errors import InputError, WindowError
+from verify.linear.field import HarmonicField, travelling_wavenumber
 from verify.linear.registry import EXACT, MODELS, discrete
 from verify.quantities.waves import FieldOptions, driven_case, measured
 from verify.report.plotting import MovingLine
@@ -22,13 +23,13 @@ from verify.studies.base import Axes, Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, si, sized_title, table
 from verify.studies.convergence import Counts
 from verify.studies.tables import scene_margins
-
-if TYPE_CHECKING:
-    from verify.linear.field import HarmonicField
-    from verify.travelling_wave import BestDrive, DrivenCase
+from verify.travelling_wave import BestDrive, DrivenCase, best_drive, best_frequency, surface_motion
+from verify.waves.driven_case import driven
+from verify.waves.operating_point import lead_deg
+from verify.waves.window import check_span, check_waves, middle_half
 
 Row: TypeAlias = dict[str, Any]
-Fields: TypeAlias = "dict[str, HarmonicField]"
+Fields: TypeAlias = dict[str, HarmonicField]
 FRAMES, POINTS = 36, 13
 SURFACE = "#cc3f76"
 WAVES = (
@@ -56,8 +57,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def check(self, scene: Scene) -> None:
         """Raise InputError without two forces, for a beam without waves, a window or a size that does not suit them."""
-        from verify.waves.window import check_span, check_waves, middle_half
-
         if len(scene.forces) != 2 or scene.drive is None:
             raise InputError("wave: the study needs a [drive] with two forces, add them")
         case = driven_case(scene, FieldOptions(theory=self.theory))
@@ -77,9 +76,6 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Solve the fields of all models. Raises InputError."""
-        from verify.travelling_wave import best_drive
-        from verify.waves.driven_case import driven
-
         assert scene.drive is not None
         exact, hertz = driven_case(scene, FieldOptions(theory=self.theory)), scene.drive.frequency_hz
         models = [model.name for model in discrete("harmonic", scene.beam)]
@@ -119,11 +115,9 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         )
 
     def _margins(
-        self, scene: Scene, cache: SolutionCache, rows: list[Row], n: int, best: "BestDrive"
-    ) -> "tuple[list[Margin], dict[str, float], BestDrive | None]":
+        self, scene: Scene, cache: SolutionCache, rows: list[Row], n: int, best: BestDrive
+    ) -> tuple[list[Margin], dict[str, float], BestDrive | None]:
         """(margins, standing-wave ratio by title, the best drive by Timoshenko theory where shear changes the wave)."""
-        from verify.travelling_wave import best_drive
-
         ratio = {row["name"]: row["drive"]["standing_wave_ratio"] for row in rows}
         models = dict.fromkeys(row["model"] for row in rows if row["N"])
         settings, hertz = not_default({"theory": self.theory}), scene.drive.frequency_hz if scene.drive else 0.0
@@ -146,7 +140,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return margins, shown, moved
 
 
-def _sized(case: "DrivenCase", model: str, count: int | None) -> "DrivenCase":
+def _sized(case: DrivenCase, model: str, count: int | None) -> DrivenCase:
     """A case on another model of the same theory."""
     return replace(
         case, model=MODELS[model].build(case.beam, count, **dict(not_default({"theory": case.model.theory})))
@@ -172,10 +166,8 @@ def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
     return table(f"The wave over N, at {hertz:g} Hz", rows, columns, *notes)
 
 
-def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCache, progress: Progress) -> Row:
+def _waves(exact: DrivenCase, model: str, count: int | None, cache: SolutionCache, progress: Progress) -> Row:
     """The wave at the drive's frequency, and at the model's own frequency of least reflection if there is one."""
-    from verify.travelling_wave import best_frequency
-
     progress(name := sized_title(model, count))
     case = _sized(exact, model, count)
     row = {"name": name, "model": model, "N": count, "drive": _operation(case, cache), "best": None, "note": ""}
@@ -185,7 +177,7 @@ def _waves(exact: "DrivenCase", model: str, count: int | None, cache: SolutionCa
         return row | {"note": str(error)}
 
 
-def _operation(case: "DrivenCase", cache: SolutionCache) -> dict[str, float]:
+def _operation(case: DrivenCase, cache: SolutionCache) -> dict[str, float]:
     wave = measured(case, cache)
     return {
         "frequency_hz": case.frequency_hz,
@@ -195,13 +187,11 @@ def _operation(case: "DrivenCase", cache: SolutionCache) -> dict[str, float]:
     }
 
 
-def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str, moved: "BestDrive | None") -> Table:
+def _drives(best: BestDrive, case: DrivenCase, ratio: float, end: str, moved: BestDrive | None) -> Table:
     """The scene's drive, the best of equal amplitudes, and the best ratio, for waves towards the same end.
 
     `moved`: the best by Timoshenko theory.
     """
-    from verify.waves.operating_point import lead_deg
-
     first, second = (force.amplitude for force in case.forces)
     columns = [Column("drive"), Column("amplitude ratio", format=".4g"), Column("phase, deg", format=".2f")]
     rows = [
@@ -215,7 +205,7 @@ def _drives(best: "BestDrive", case: "DrivenCase", ratio: float, end: str, moved
     return Table("Two actuators without reflection", [*columns, Column("SWR", format=".5g")], rows, notes)
 
 
-def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
+def ellipses(field: HarmonicField) -> tuple[Any, Any, float, float]:
     """Motion of surface points about the middle over one period: of the middle half, at most three half waves of it.
 
     Fewer than two points in half a wave show a wave of another length.
@@ -223,8 +213,6 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     (x with the motion along the beam magnified so that neighbours do not touch, (POINTS, FRAMES + 1), height likewise,
     metres, that magnification, largest true ratio of width to height).
     """
-    from verify.travelling_wave import surface_motion
-
     turn = np.exp(2j * np.pi * np.arange(FRAMES + 1) / FRAMES)
     half = min(0.25, 1.5 / max(_half_waves(field), 1.0))
     places = np.linspace(0.5 - half, 0.5 + half, POINTS) * field.beam.length
@@ -235,14 +223,12 @@ def ellipses(field: "HarmonicField") -> tuple[Any, Any, float, float]:
     return places[:, None] + magnified * along, up, magnified, float(ratio.max())
 
 
-def _half_waves(field: "HarmonicField") -> float:
+def _half_waves(field: HarmonicField) -> float:
     """Half waves of the drive along the beam; 0 where no wave travels."""
-    from verify.linear.field import travelling_wavenumber
-
     return (travelling_wavenumber(field.beam, float(field.frequency_hz)) or 0.0) * field.beam.length / np.pi
 
 
-def _sampled(field: "HarmonicField") -> Any:
+def _sampled(field: HarmonicField) -> Any:
     """Positions for smooth lines, at least 16 in half a wave, m."""
     return np.linspace(0.0, field.beam.length, max(601, int(16 * _half_waves(field)) + 1))
 
@@ -254,7 +240,7 @@ def _envelopes(fields: Fields, title: str) -> Figure:
     return line_chart("wave-envelopes", title, ENVELOPES, lines, ("x", "m"), ("amplitude", "m"))
 
 
-def _ellipses(field: "HarmonicField") -> Figure:
+def _ellipses(field: HarmonicField) -> Figure:
     """Paths of surface points."""
     x, up, magnified, widest = ellipses(field)
     paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
