@@ -29,12 +29,8 @@ MAX_FRAMES = 300  # largest number of frames of a motion; more are thinned out
 MARKERS = {"pinned": "^", "clamped": "s", "guided": "D", "free": "none"}
 HEIGHT = 0.08  # largest drawn deflection over the length
 METADATA: dict[str, Any] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
-TYPES = {
-    "vtu": ("modes", "wave"),
-    **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA),
-    "png": (*DATA, CHART),
-    "svg": (CHART,),
-}  # what a file type holds
+TYPES = {"vtu": ("modes", "wave"), **dict.fromkeys(("xdmf", "csv", "json", "npz", "gif", "webp"), DATA)}
+TYPES |= {"png": (*DATA, CHART), "svg": (CHART,)}  # what a file type holds
 
 
 def write(scene: Scene, path: Path, request: Request, progress: Callable[[str], None] = lambda step: None) -> str:

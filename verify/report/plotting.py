@@ -173,9 +173,8 @@ def movie_frames(movie: "Movie", dpi: float = 90.0, ink: str = EVEN, paper: str 
 
     pictures: list[Any] = []
     with style(ink):
-        canvas: Any = FigureCanvasAgg(
-            MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
-        )
+        figure = MatplotlibFigure(figsize=(6.4, 3.8), dpi=dpi, layout="constrained", facecolor=paper)
+        canvas: Any = FigureCanvasAgg(figure)
         update, frames = movie.animate(canvas.figure.subplots())
         for artist in update(0):
             artist.set_animated(True)

@@ -20,8 +20,6 @@ MAX_SENTENCES = 30  # errors of one scene that are listed
 LARGEST = 5_000_000  # bytes of a scene, which Python's reader of TOML takes seconds to read
 SCHEMA_LINE = "#:schema ./verify.schema.json"
 """Names the schema for TOML editors; `verify schema --json > verify.schema.json` writes the file."""
-
-
 _NAME = {RULE: "at most 120 letters, digits, dots, _ and -, with a letter or digit first"}
 
 

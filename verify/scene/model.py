@@ -147,12 +147,12 @@ class MovingBase(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         """The motion in time. Raises InputError for a table that is none."""
         motions: dict[str, Prescribed] = {}
         for name in ("rotation", "x", "y"):
-            given = getattr(self, name)
+            motion = getattr(self, name)
             try:
-                table = isinstance(given, TimeTable)
-                motions[name] = (
-                    tabulated(given.times, given.values) if table else polynomial(*given) if given else still
-                )
+                if isinstance(motion, TimeTable):
+                    motions[name] = tabulated(motion.times, motion.values)
+                else:
+                    motions[name] = polynomial(*motion) if motion else still
             except InputError as error:
                 raise InputError(f"base.{name}.{error}") from None
         return Base(hub_radius=self.hub_radius, **motions)

@@ -219,26 +219,25 @@ def run_gate(gate: Gate, scene: Scene, cache: SolutionCache) -> GateResult:
 
 def _verdict(gate: Gate, value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', fraction of the tolerance)."""
+    expected, within = gate.expect, gate.within
+    if isinstance(value, Bracket) and isinstance(expected, float) and within is None:
+        inside = value.lower < expected < value.upper
+        outside = f"{value.lower!r} to {value.upper!r} does not contain {expected!r}"
+        return "" if inside else outside, _fraction(expected, value.lower, value.upper)
+    if isinstance(value, complex) and isinstance(expected, Complex) and within is not None:
+        fraction = hypot(value.real - expected.re, value.imag - expected.im) / within
+        return "" if fraction <= 1.0 else f"{value!r} lies outside the disc", fraction
+    if isinstance(value, float | int) and not isfinite(value):
+        return f"{value!r} is not finite", None
+    if isinstance(value, float | int) and isinstance(expected, float) == (within is not None):
+        low, high = gate.bounds
+        if isinstance(expected, float) and within is not None:
+            low, high = expected - within, expected + within
+        side = f"below {low!r}" if value < low else f"above {high!r}"
+        return "" if low <= value <= high else f"{value!r} lies {side}", _fraction(value, low, high)
     kinds = {Bracket: "a bracket needs expect alone", complex: "a complex value needs expect = { re, im } with within"}
     remedy = kinds.get(type(value), "a real value needs expect with within, or at_least, at_most")
-    outside, fraction = f"{value!r}: {remedy}", None
-    if isinstance(value, Bracket) and isinstance(gate.expect, float) and gate.within is None:
-        fraction = _fraction(gate.expect, value.lower, value.upper)
-        inside = value.lower < gate.expect < value.upper
-        outside = "" if inside else f"{value.lower!r} to {value.upper!r} does not contain {gate.expect!r}"
-    elif isinstance(value, complex) and isinstance(gate.expect, Complex) and gate.within is not None:
-        fraction = hypot(value.real - gate.expect.re, value.imag - gate.expect.im) / gate.within
-        outside = "" if fraction <= 1.0 else f"{value!r} lies outside the disc"
-    elif isinstance(value, float | int) and not isfinite(value):
-        outside = f"{value!r} is not finite"
-    elif isinstance(value, float | int) and isinstance(gate.expect, float) == (gate.within is not None):
-        low, high = gate.bounds
-        if isinstance(gate.expect, float) and gate.within is not None:
-            low, high = gate.expect - gate.within, gate.expect + gate.within
-        fraction = _fraction(value, low, high)
-        side = f"below {low!r}" if value < low else f"above {high!r}"
-        outside = "" if low <= value <= high else f"{value!r} lies {side}"
-    return outside, fraction
+    return f"{value!r}: {remedy}", None
 
 
 def _fraction(value: float, low: float, high: float) -> float | None:

@@ -31,11 +31,9 @@ class Claims(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Raise InputError for a claim on the scene's slider where the scene runs none."""
         for claim in scene.claim:
             if of_scene(claim) and (scene.slider is None or scene.motion is None):
-                missing = "slider" if scene.slider is None else "motion"
-                raise InputError(
-                    f"claim.{claim.id} is about the scene's slider and the scene has no [{missing}]: add it, or give "
-                    "the claim arguments"
-                )
+                subject = f"claim.{claim.id} is about the scene's slider and the scene has no"
+                table_name = "slider" if scene.slider is None else "motion"
+                raise InputError(f"{subject} [{table_name}]: add it, or give the claim arguments")
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Evaluate every claim; one that cannot be evaluated is a row with the reason."""

@@ -68,9 +68,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
         models, left_out = comparable(cache.beam, self.counts, max(self.modes))
         variants = self.variants(models)
         seconds = self._times(cache, variants, progress)
-        rows = [
-            row for mode in self.modes for variant in variants for row in self._series(cache, variant, mode, seconds)
-        ]
+        rows = [row for mode, v in product(self.modes, variants) for row in self._series(cache, v, mode, seconds)]
         bounds, no_bound = self._bounds(cache)
         settled, warnings = self._summarise(cache, rows)
         margins = []

@@ -37,6 +37,7 @@ TIME = ("time", "s")
 KEYS = ["displacement", "mean_speed", "largest_friction", "mean_friction", "mean_surface_speed", "coupling", "margins"]
 KEYS += ["energy", "statistics", "notes"]  # of a run, for JSON
 SLIDER, FRICTION = "#d96c05", "#cc3f76"
+GROWTH = "Periods over which the forces grow; 2 from rest unless set, 0 is a step load."
 MOVIE = "Links are straight between their joints; bar: friction on the slider, relative to its largest value."
 
 
@@ -63,9 +64,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
     start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"
-    soft_start_periods: Annotated[
-        float | None, Meta(description="Periods over which the forces grow; 2 from rest unless set, 0 is a step load.")
-    ] = None
+    soft_start_periods: Annotated[float | None, Meta(description=GROWTH)] = None
     modal_damping: Damping | None = None
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None
     steps_per_period: Annotated[int, Meta(ge=1, description="Steps of the slider in a period, at least.")] = 128

@@ -32,6 +32,7 @@ from verify.studies.tables import Row, Variants
 
 Point: TypeAlias = tuple[float, ...]  # of variables between 0 and 1
 STAGES = {"global": ("DE", "COBYQA"), "cma": ("CMA-ES", "COBYQA"), "local": ("COBYQA",)}
+METHODS = "global: differential evolution, cma: CMA-ES, each before a local search; local: from start."
 INFEASIBLE = 1e30  # least merit of a point that violates a limit
 MOST_EXCESS = 900.0  # that counts: a point without a value, of merit 1000 INFEASIBLE, ranks behind all others
 TOLERANCE = 1e-6  # violation, relative to a limit, up to which a point is feasible
@@ -96,10 +97,7 @@ class Optimise(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     goal: Annotated[Literal["minimise", "maximise"], Meta(description="What to do with it.")] = "minimise"
     variable: Annotated[tuple[Variable, ...], Meta(min_length=1, description="What varies.")]
     limit: Annotated[tuple[Limit, ...], Meta(description="Limits of other quantities.")] = ()
-    method: Annotated[
-        Literal["global", "cma", "local"],
-        Meta(description="global: differential evolution, cma: CMA-ES, each before a local search; local: from start."),
-    ] = "global"
+    method: Annotated[Literal["global", "cma", "local"], Meta(description=METHODS)] = "global"
     evaluations: Annotated[int, Meta(ge=10, description="Most points of each search.")] = 1000
     seed: Annotated[int, Meta(ge=1, description="Of random numbers.")] = 1
 

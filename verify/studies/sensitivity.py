@@ -24,6 +24,8 @@ from verify.studies.tables import Variants
 
 CONFIDENCE = 0.95
 CAPTION = "First-order and total shares in the variance, with 95 % intervals of the sampling."
+Distribution = Literal["normal", "lognormal", "uniform"]
+SD = "Standard deviation; of lognormal that of the logarithm."
 SHARES = "first order", "from", "to", "total", "total from", "total to"
 NOTES = [
     "first order: removed by knowledge of the input alone; total: remains where all others are known.",
@@ -35,12 +37,8 @@ class Input(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """An uncertain number of the scene, around its value there. Raises InputError for another's parameters."""
 
     key: Annotated[str, Meta(description="'beam.youngs_modulus', 'drive.force.*.amplitude'; or an argument.")]
-    distribution: Annotated[
-        Literal["normal", "lognormal", "uniform"], Meta(description="The scene's value is its mean, or its median.")
-    ] = "normal"
-    sd: Annotated[float, Meta(gt=0, description="Standard deviation; of lognormal that of the logarithm.")] | None = (
-        None
-    )
+    distribution: Annotated[Distribution, Meta(description="The scene's value is its mean, or its median.")] = "normal"
+    sd: Annotated[float, Meta(gt=0, description=SD)] | None = None
     low: Annotated[float, Meta(description="Of uniform, in the key's unit.")] | None = None
     high: Annotated[float, Meta(description="Of uniform, in the key's unit.")] | None = None
 
@@ -73,7 +71,7 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name, title, devices = "sensitivity", "Shares of uncertain inputs", True
 
     quantity: Annotated[str, Meta(description="Name, see `verify quantities`.")]
-    arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = msgspec.field(default_factory=dict)
+    arguments: Annotated[dict[str, Any], Meta(description="Its arguments.")] = {}  # noqa: RUF012
     logarithm: Annotated[bool, Meta(description="Shares of the logarithm of its size.")] = False
     input: Annotated[tuple[Input, ...], Meta(min_length=1, description="What is uncertain.")]
     n: Annotated[int, Meta(ge=16, description="A power of two; n (inputs + 2) values are computed.")] = 256
@@ -101,10 +99,8 @@ class Sensitivity(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         both = values[: 2 * self.n]
         low, middle, high = np.quantile(both, [0.025, 0.5, 0.975])
         keys, largest = [uncertain.key for uncertain in self.input], int(np.argmax(total[0]))
-        rows = [
-            (uncertain.key, uncertain.distribution, *map(float, (*first[:, i], *total[:, i])))
-            for i, uncertain in enumerate(self.input)
-        ]
+        shares = np.vstack([first, total]).T.tolist()
+        rows = [(x.key, x.distribution, *share) for x, share in zip(self.input, shares, strict=True)]
         columns = [Column("input"), Column("distribution"), *(Column(name, format=".4f") for name in SHARES)]
         unit = "" if self.logarithm else f" {unit_symbol(QUANTITIES[self.quantity].unit)}".rstrip()
         what = f"ln |{self.quantity}|" if self.logarithm else self.quantity

@@ -56,9 +56,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
             absent += missing(f"errors of {variant.title}", errors[variant].count(None), self.modes, reason)
             ends += [] if error is None else [f"{variant.title} {100 * error:+.4g} %"]
         theories, theory, settings = self._theories(cache), theory_of(variants[0].settings), variants[0].settings
-        rows = zip(
-            numbers, [cache.exact_hz(n, theory) for n in numbers], *errors.values(), *theories.values(), strict=True
-        )
+        exact = [cache.exact_hz(n, theory) for n in numbers]
+        rows = zip(numbers, exact, *errors.values(), *theories.values(), strict=True)
         columns = [Column("mode"), Column(f"exact {theory_name(theory)}", "Hz", ".7g")]
         columns += [percent(v.title) for v in variants] + [percent(f"{theory_name(t)} theory") for t in theories]
         note = "Theory: change of the exact frequency against Euler-Bernoulli theory."
@@ -128,11 +127,8 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 def draw_errors(errors: dict[Variant, list[float | None]], theories: dict[str, list[float]], ax: Axes) -> None:
     """Sizes of the errors over mode number, beside what other theories change."""
     colors = variant_colors(tuple(errors))
-    lines: list[Any] = [
-        (v.title, "-o", {"color": colors[v], "markersize": 3.5}, series) for v, series in errors.items()
-    ]
-    for name, changes in theories.items():
-        lines.append((f"{theory_name(name)} theory", "--", {"color": THEORY_COLORS[name]}, changes))
+    lines: list[Any] = [(v.title, "-o", {"color": colors[v], "markersize": 3.5}, errors[v]) for v in errors]
+    lines += [(f"{theory_name(t)} theory", "--", {"color": THEORY_COLORS[t]}, theories[t]) for t in theories]
     for label, form, style, series in lines:
         sizes = [float("nan") if value is None else 100 * abs(value) for value in series]
         ax.plot(range(1, len(sizes) + 1), sizes, form, label=label, **style)

@@ -48,17 +48,15 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     quantities: Annotated[tuple[str, ...], Meta(min_length=1, description="Names, see `verify quantities`.")]
     over: Annotated[dict[str, list[Any]], Meta(min_length=1, description="Values by scene key or argument.")]
-    arguments: Annotated[dict[str, Any], Meta(description="Fixed arguments, where a quantity has them.")] = (
-        msgspec.field(default_factory=dict)
-    )
+    arguments: Annotated[dict[str, Any], Meta(description="Fixed arguments, where a quantity has them.")] = {}  # noqa: RUF012
     claims: Annotated[bool, Meta(description="Count the scene's claims that agree in each combination.")] = False
+
+    def _variants(self, scene: Scene) -> Variants:
+        return Variants.of(scene, [(name, {}) for name in self.quantities])
 
     def check(self, scene: Scene) -> None:
         """Raise InputError for an unknown quantity, scene key or argument, and for an empty list."""
-        combination = _combinations(self.over)[0]
-        Variants.of(scene, [(name, {}) for name in self.quantities]).check_keys(
-            (*self.arguments, *combination), "sweep"
-        )
+        self._variants(scene).check_keys((*self.arguments, *_combinations(self.over)[0]), "sweep")
         if self.claims and not scene.claim:
             raise InputError("sweep.claims = true, and the scene has no [[claim]]: add one, or leave it out")
 
@@ -71,8 +69,7 @@ class Sweep(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         or argument, and for a file of another sweep; a combination that raises it is a row with the reason.
         """
         self.check(scene)
-        variants = Variants.of(scene, [(name, {}) for name in self.quantities])
-        combinations = _combinations(self.over)
+        variants, combinations = self._variants(scene), _combinations(self.over)
         header = _header(self, variants.tables) if file else b""
         lines = _lines(file, header) if file else {}
         todo = [i for i in range(len(combinations)) if i not in lines]

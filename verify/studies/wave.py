@@ -142,9 +142,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 def _sized(case: DrivenCase, model: str, count: int | None) -> DrivenCase:
     """A case on another model of the same theory."""
-    return replace(
-        case, model=MODELS[model].build(case.beam, count, **dict(not_default({"theory": case.model.theory})))
-    )
+    settings = dict(not_default({"theory": case.model.theory}))
+    return replace(case, model=MODELS[model].build(case.beam, count, **settings))
 
 
 def _over_size(hertz: float, rows: list[Row], imposed: str) -> Table:
@@ -179,12 +178,8 @@ def _waves(exact: DrivenCase, model: str, count: int | None, cache: SolutionCach
 
 def _operation(case: DrivenCase, cache: SolutionCache) -> dict[str, float]:
     wave = measured(case, cache)
-    return {
-        "frequency_hz": case.frequency_hz,
-        "standing_wave_ratio": wave.standing_wave_ratio,
-        "axis_ratio": wave.mean_axis_ratio,
-        "crest_speed": wave.crest_speed,
-    }
+    operation = {"frequency_hz": case.frequency_hz, "standing_wave_ratio": wave.standing_wave_ratio}
+    return operation | {"axis_ratio": wave.mean_axis_ratio, "crest_speed": wave.crest_speed}
 
 
 def _drives(best: BestDrive, case: DrivenCase, ratio: float, end: str, moved: BestDrive | None) -> Table:
