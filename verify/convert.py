@@ -241,8 +241,6 @@ def _spelt_out(part: Any, field: str) -> list[Any]:
         return [part]
     start, end, step = int(span[1]), int(span[2]), int(span[3] or 1)
     if end < start or step == 0 or (end - start) // step >= LONGEST_RANGE:
-        raise InputError(
-            f"{field} = {shown(part)}: write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5, or "
-            "10-50:10 in steps of 10"
-        )
+        remedy = f"write a range upwards and of at most {LONGEST_RANGE} numbers, 1-5, or 10-50:10 in steps of 10"
+        raise InputError(f"{field} = {shown(part)}: {remedy}")
     return list(range(start, end + 1, step))

@@ -54,9 +54,8 @@ def cluster(where: str | int) -> Iterator[None]:
             raise InputError(f"cluster = {shown(where)} has no usable worker ({error}): {remedy}") from None
         for worker, installed in theirs.items():
             if installed != versions():
-                raise InputError(
-                    f"worker {worker} has {installed}, this machine {versions()}: install the same versions"
-                )
+                both = f"worker {worker} has {installed}, this machine {versions()}"
+                raise InputError(f"{both}: install the same versions")
         token = CLIENT.set(client)
         try:
             yield

@@ -90,10 +90,8 @@ class Registry(Mapping[str, T], Generic[T]):
             except Exception as error:  # whatever a foreign module raises
                 package = point.dist.name if point.dist else "another package"
                 why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-                self._unusable[point.name] = (
-                    f"{self._what} = {point.name!r} of {package}, {point.value}, cannot be used ({why}): mend that "
-                    "package or uninstall it"
-                )
+                member_of = f"{self._what} = {point.name!r} of {package}, {point.value},"
+                self._unusable[point.name] = f"{member_of} cannot be used ({why}): mend that package or uninstall it"
 
 
 def _import(home: str) -> Any:

@@ -92,9 +92,8 @@ def read_runs(path: Path, field: str) -> dict[str, dict[str, Any]]:
     elif exists(path / DATA, field):
         files = [path / DATA]
     elif not os.access(path, os.R_OK):
-        raise InputError(
-            f"{field} = {shown(str(path))} may not be read: change its permissions, or give a {DATA} in it"
-        )
+        remedy = f"change its permissions, or give a {DATA} in it"
+        raise InputError(f"{field} = {shown(str(path))} may not be read: {remedy}")
     else:
         homes = [path] if saved_in(path) else sorted(home for home in path.iterdir() if home.is_dir())
         files = [saved_in(home)[-1] / DATA for home in homes if saved_in(home)]
@@ -125,9 +124,8 @@ def compare_runs(before: Mapping[str, Run], after: Mapping[str, Run]) -> Result:
         (name, old), (_, new) = *before.items(), *after.items()
         pairs = [(name, old, new)]
     elif not pairs:
-        raise InputError(
-            f"A has {', '.join(before)} and B has {', '.join(after)}, no name in both: give runs of the same scene"
-        )
+        different = f"A has {', '.join(before)} and B has {', '.join(after)}, no name in both"
+        raise InputError(f"{different}: give runs of the same scene")
     gates = [(name, *row) for name, old, new in pairs for row in _gates(old["gates"], new["gates"])]
     inputs = [(name, *row) for name, old, new in pairs for row in _changed(old["inputs"], new["inputs"])]
     versions = [(name, *row) for name, old, new in pairs for row in _changed(_versions(old), _versions(new))]
@@ -160,7 +158,7 @@ def _gates(before: list[Any], after: list[Any]) -> Iterator[tuple[Any, ...]]:
         if any(gate_before[key] != gate_after[key] for key in ("passed", "value", "expected")):
             a, b = gate_before["value"], gate_after["value"]
             real = isinstance(a, float | int) and isinstance(b, float | int) and a
-            values = [_text(value) for value in (a, b)] if not real else [a, b]
+            values = [", ".join(f"{k} {v}" for k, v in x.items()) if isinstance(x, dict) else x for x in (a, b)]
             verdicts = [VERDICTS.get(gate["passed"], "missing") for gate in (gate_before, gate_after)]
             criteria = _turn(gate_before["expected"] or "", gate_after["expected"] or "")
             yield name, _turn(*verdicts), criteria, *values, (b - a) / abs(a) if real else None
@@ -168,10 +166,6 @@ def _gates(before: list[Any], after: list[Any]) -> Iterator[tuple[Any, ...]]:
 
 def _turn(before: str, after: str) -> str:
     return before if before == after else f"{before} {ARROW} {after}"
-
-
-def _text(value: Any) -> Any:
-    return ", ".join(f"{k} {v}" for k, v in value.items()) if isinstance(value, dict) else value
 
 
 def _versions(run: Run) -> dict[str, Any]:

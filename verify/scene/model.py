@@ -102,10 +102,8 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             cause = "drive.shunt" if self.shunt else f"drive.kind = {self.kind!r}"
             raise InputError(f"drive.actuator is missing: {cause} needs the design of an actuator, give it a kind")
         if self.actuator and self.force and not self.shunt and self.kind not in ("voltage", "current"):
-            raise InputError(
-                f"drive.kind = {self.kind!r}: its amplitudes are not those of a drive.actuator, give 'voltage' or "
-                "'current', or leave drive.actuator out"
-            )
+            remedy = "give 'voltage' or 'current', or leave drive.actuator out"
+            raise InputError(f"drive.kind = {self.kind!r}: its amplitudes are not those of a drive.actuator, {remedy}")
 
 
 class TimeTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -251,10 +249,8 @@ class Claim(Limits, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def __post_init__(self) -> None:
         if (self.number is None) != (self.tolerance is None) or (self.tolerance is not None and self.tolerance <= 0):
-            raise InputError(
-                f"claim.{self.id}.tolerance = {self.tolerance!r}: give one above 0 with a number as value, none with a "
-                "sign or a limit"
-            )
+            remedy = "give one above 0 with a number as value, none with a sign or a limit"
+            raise InputError(f"claim.{self.id}.tolerance = {self.tolerance!r}: {remedy}")
         self.check(f"claim.{self.id}", "value", "tolerance", other=self.value)
 
     @property

@@ -145,10 +145,9 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The share of one model in `seconds`, by the measured time of a period. Raises InputError below the least."""
         cost, figures, share = seconds_per_period(case), self.speeds + SEARCH, self.seconds / len(self.models)
         if share < (needed := cost * (figures * LEAST + self.periods)):
-            raise InputError(
-                f"motor.seconds = {self.seconds:g}: {name} takes {1e3 * cost:.2g} ms for a drive period and the motor "
-                f"at least {needed * len(self.models):.2g} s, raise it, or lower motor.speeds or motor.periods"
-            )
+            why = f"{name} takes {1e3 * cost:.2g} ms for a drive period and the motor at least"
+            remedy = f"{needed * len(self.models):.2g} s, raise it, or lower motor.speeds or motor.periods"
+            raise InputError(f"motor.seconds = {self.seconds:g}: {why} {remedy}")
         return Allowance(cost, share / cost - 3 * self.periods, figures, self.periods)
 
     def _field(self, case: MotorCase, like: list[SteadyState], cache: SolutionCache, progress: Progress) -> Field:

@@ -65,10 +65,8 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_span(case.beam, [*positions, *case.places[0]], middle_half(case.beam), case.places[1])
             check_waves(scene.beam, frequency, middle_half(scene.beam))
         except WindowError as error:
-            raise WindowError(
-                f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): use quantities or gates "
-                "with a window of their own, and leave a section [wave] out"
-            ) from None
+            remedy = "use quantities or gates with a window of their own, and leave a section [wave] out"
+            raise WindowError(f"wave: its window [L/4, 3L/4] does not suit this beam ({error}): {remedy}") from None
         bare = replace(scene.beam, mass=(), spring=())
         for model in discrete("harmonic", scene.beam) if bare.uniform else ():
             for count in filter(None, (self.count, *(self.counts or ()))):
@@ -106,7 +104,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return Result(
             summary=summary if verdict_of(margins).holds else "",
             tables=[_over_size(hertz, rows, imposed), _drives(best, exact, exact_swr, end[direction], moved)],
-            figures=[_envelopes(fields, marked(f"Envelope of the wave, N = {n}", margins)), _ellipses(fields[EXACT])],
+            figures=_figures(fields, marked(f"Envelope of the wave, N = {n}", margins)),
             movies=[Movie("wave-moving", marked(f"One period, N = {n}", margins), MOVIE, _movie(fields, n))],
             warnings=[f"{', '.join(names)}: {note}." for note, names in reasons.items() if note],
             data={"rows": rows, "other_drive_standing_wave_ratio": ratio}
@@ -228,21 +226,19 @@ def _sampled(field: HarmonicField) -> Any:
     return np.linspace(0.0, field.beam.length, max(601, int(16 * _half_waves(field)) + 1))
 
 
-def _envelopes(fields: Fields, title: str) -> Figure:
-    """Amplitude over the beam on each model."""
-    x = _sampled(fields[EXACT])
+def _figures(fields: Fields, title: str) -> list[Figure]:
+    """Amplitude over the beam on each model, paths of surface points of the exact beam."""
+    along, x = ("x", "m"), _sampled(fields[EXACT])
     lines = [(MODELS[m].title, x, abs(field.deflection(x)), model_style(m)) for m, field in fields.items()]
-    return line_chart("wave-envelopes", title, ENVELOPES, lines, ("x", "m"), ("amplitude", "m"))
-
-
-def _ellipses(field: HarmonicField) -> Figure:
-    """Paths of surface points."""
-    x, up, magnified, widest = ellipses(field)
-    paths = [("", x[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
-    start = ("", x[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
+    places, up, magnified, widest = ellipses(fields[EXACT])
+    paths = [("", places[i], up[i], {"color": "#2f80ed"}) for i in range(POINTS)]
+    start = ("", places[:, 0], up[:, 0], {"color": SURFACE, "marker": "o", "linestyle": ""})
     caption = f"To scale to {widest:.3g} times as wide as high; along the beam magnified {magnified:.2g} times."
-    title = "Surface ellipses along the beam, exact field"
-    return line_chart("wave-ellipses", title, caption, [*paths, start], ("x", "m"), ("deflection", "m"))
+    surface = "Surface ellipses along the beam, exact field"
+    return [
+        line_chart("wave-envelopes", title, ENVELOPES, lines, along, ("amplitude", "m")),
+        line_chart("wave-ellipses", surface, caption, [*paths, start], along, ("deflection", "m")),
+    ]
 
 
 def _movie(fields: Fields, count: int) -> Callable[[Axes], Any]:
