@@ -90,12 +90,10 @@ def _mesh(data: Dataset, points: "dict[str, Array]") -> Any:
 
 def _vtu(data: Dataset, path: Path) -> None:
     """Deflections as vectors, so that programs can warp the beam by them."""
-    import meshio
-
     scalars = ("amplitude", "phase_deg", "slope_real", "slope_imaginary")
     points = {name: values if name in scalars else _vectors(values) for name, values in data.points.items()}
     with whole(path, "to") as part:
-        meshio.write(part, _mesh(data, points), file_format="vtu")
+        _mesh(data, points).write(part, file_format="vtu")
 
 
 def _xdmf(data: Dataset, path: Path) -> None:
