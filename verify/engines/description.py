@@ -73,13 +73,17 @@ class Joint(msgspec.Struct, frozen=True):
 
 
 class Link(msgspec.Struct, frozen=True):
-    """A rigid link with its bodies from x = `start`, m: centre of mass from there, inertia about it, kg m^2."""
+    """A rigid link with its bodies from x = `start`, m: centre of mass from there, inertia about it, kg m^2.
+
+    `off`: y and z of the centre of mass of a piece of a curve, m.
+    """
 
     start: float
     length: float
     mass: float
     centre: float
     inertia: tuple[float, float, float]
+    off: tuple[float, float] = (0.0, 0.0)
 
 
 class Spring(msgspec.Struct, frozen=True):

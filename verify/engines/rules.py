@@ -40,7 +40,7 @@ class Judged(NamedTuple):
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
     of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
-    `means`: EI or GJ in words.
+    `means`: EI or GJ in words. `remedy`: what is better than more links.
     """
 
     line: Line
@@ -54,6 +54,7 @@ class Judged(NamedTuple):
     advice: list[str]
     odd: list[str]
     means: str
+    remedy: str = "give more links"
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
