@@ -117,6 +117,15 @@ def test_a_stepped_line_has_order_two_against_the_exact_beam(tmp_path):
     assert abs(off).max() < 2e-2  # a step inside a link, by the integral of its compliance
 
 
+def test_sizes_between_points_are_those_of_a_cone(tmp_path):
+    path = table(tmp_path / "cone.csv", x=[0.0, 1.2], y=0.0, diameter=[6e-3, 3e-3])
+    joints = curve_chain(path, 12, overrides=["E=2GPa", "rho=900"], error=0.3).data["joints"]
+    assert joints[7].hinges[0].stiffness == pytest.approx(2e9 * np.pi / 64 * 4.25e-3**4 / 0.1, rel=1e-9)
+    path = table(tmp_path / "wedge.csv", x=[0.0, 1.2], y=0.0, thickness=[6e-3, 3e-3])
+    joints = curve_chain(path, 12, overrides=["E=2GPa", "rho=900", "width=0.02"], error=0.3).data["joints"]
+    assert joints[7].hinges[0].stiffness == pytest.approx(2e9 * 0.02 * 4.25e-3**3 / 12 / 0.1, rel=1e-9)
+
+
 def as_sdf(chain, path):
     """Frequencies by absolute poses and axes in the links, as of SDF 1.6."""
     from scipy.spatial.transform import Rotation

@@ -24,6 +24,9 @@ from verify.report.result import Column, Result, Table
 from verify.settings import wall_label
 from verify.validation import check_integer, check_number
 
+ROUNDED = 1e-6
+"""Relative error up to which the digits of a table's points are in its observed order."""
+
 
 @one_blas_thread()
 def curve_chain(
@@ -74,16 +77,17 @@ def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     errors, steps = hertz / exact - 1.0, np.diff(chain.nodes)
     columns = [Column("mode"), Column("rod", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column("error", format="+.3g", percent=True), Column("order", format=".2f")]
-    shown = [order if np.isfinite(order) else None for order in orders.tolist()]
+    shown = [x if x > 0.5 and abs(e) > ROUNDED else None for x, e in zip(orders, errors, strict=True)]
     rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), shown, strict=True))
-    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 2 and as of order 2."
+    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 2 and as of order 2. "
+    note += "Orders are of errors above 1e-4 % without a change of sign."
     worst = int(abs(errors).argmax())
     words: dict[str, Any] = {"where": f"at mode {worst + 1}", "remedy": "give more links"}
     words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
     margins = [Margin(name=f"discretisation of {n} links", **words)]
-    why = "with a step of EI, order 2" if len(chain.rod.jumps) else "order 4 for smooth EI"
-    why = "of unequal length, order 2" if np.ptp(steps) > ALIKE * steps[0] else why
-    summary = f"N = {n} rigid pieces of the curve of {with_unit(chain.nodes[-1], 'm')}, joints on it, {why}; "
+    why = "order 2 by a step of EI" if len(chain.rod.jumps) else "order 4 where EI is smooth"
+    why = "order 2 by unequal lengths" if np.ptp(steps) > ALIKE * steps[0] else why
+    summary = f"N = {n} rigid pieces of the curve of {with_unit(chain.nodes[-1], 'm')}, joints and ends on it, {why}; "
     summary += wall_label(chain.wall)
     tables, warnings = [table(chain), Table("Frequencies", columns, rows, [note])], list[str]()
     if chain.steps:

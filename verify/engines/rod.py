@@ -1,9 +1,9 @@
 """A rod along a curve in a plane or in space: its stiffnesses, mass and section frame, from a table of points.
 
-The curve is a cubic spline through the points, by its arc length. Values are linear between points; a point that is
-given twice is a step. `u` is the direction in which bending with EI deflects, `u` x tangent that of EI2. At the start
-`u` lies in the plane of a table of x and y, else it is the normal nearest to z (x where the curve starts along z); from
-there it is transported without rotation about the tangent, and turned about it by `roll`.
+The curve is a cubic spline through the points, by its arc length. Columns are linear between points, and EI by columns
+of sizes; a point that is given twice is a step. `u` is the direction in which bending with EI deflects, `u` x tangent
+that of EI2. At the start `u` lies in the plane of a table of x and y, else it is the normal nearest to z (x where the
+curve starts along z); from there it is transported without rotation about the tangent, and turned about it by `roll`.
 """
 
 import csv
@@ -51,6 +51,8 @@ class Rod:
     in_space: bool
     start: Array
     """`u` at the start but for its part along the tangent, (3,)."""
+    powers: tuple[float, ...] = (1.0,) * len(VALUES)
+    """Of values by the sizes that are linear between points."""
 
     @cached_property
     def _spline(self) -> tuple[Array, Callable[..., Array]]:
@@ -72,7 +74,8 @@ class Rod:
 
     def at(self, s: Array) -> Array:
         """`values` at arc lengths, (n, 8)."""
-        return np.stack([np.interp(s, self.s, one) for one in self.values.T], axis=1)
+        each = zip(self.values.T, self.powers, strict=True)
+        return np.stack([np.interp(s, self.s, one ** (1.0 / p)) ** p for one, p in each], axis=1)
 
     def frames(self, s: Array) -> Array:
         """Frames (tangent, `u` x tangent, `u`) at ascending arc lengths from 0, (n, 3, 3).
@@ -165,7 +168,12 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
         raise InputError(f"{path.name}: its points are one place, give a curve")
     tangent = first[0] / np.linalg.norm(first[0])
     start = np.array([-tangent[1], tangent[0], 0.0]) if "z" not in table else np.eye(3)[2]
-    return Rod(points, values, space, np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start)
+    # EI = E b h^3/12 and rho A by two sizes, of a round section both; GJ of a flat one, the polar inertia as EI2
+    b, h = (int(not {name, "diameter"}.isdisjoint(table)) for name in ("width", "thickness"))
+    each = zip(VALUES, (b + 3 * h, 3 * b + h, b + 3 * h, b + h, 3 * b + h, 1, 1, 1), strict=True)
+    powers = tuple(1.0 if name in table else max(power, 1.0) for name, power in each)
+    start = np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start
+    return Rod(points, values, space, start, powers)
 
 
 @lru_cache(maxsize=4096)
