@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.engines.test_chain_files import as_mjcf, as_urdf, by_script, hertz
-from tests.reference.curved_rod import rod_hz
+from tests.reference.curved_rods import frequencies
 from verify import Beam, ExactModel, Section
 from verify.answers.chains import engine_chain
 from verify.answers.curves import curve_chain
@@ -30,11 +30,11 @@ def table(path, **columns):
 def helix_frame(s, roll=0.0):
     """Tangent, u x tangent, u: Frenet's frame less its torsion, from the normal nearest to z, and a roll."""
     a = s / SPEED
-    t = np.array([R * np.cos(a), R * np.sin(a), RISE]) / SPEED
-    n = np.array([-np.sin(a), np.cos(a), 0.0])
-    angle = np.pi / 2 - RISE / SPEED**2 * s + roll
+    t = np.stack([R * np.cos(a), R * np.sin(a), RISE + 0 * a], axis=1) / SPEED
+    n = np.stack([-np.sin(a), np.cos(a), 0 * a], axis=1)
+    angle = (np.pi / 2 - RISE / SPEED**2 * s + roll)[:, None]
     u = np.cos(angle) * n + np.sin(angle) * np.cross(t, n)
-    return np.stack([t, np.cross(u, t), u], axis=1)
+    return np.stack([t, np.cross(u, t), u], axis=2)
 
 
 def helix(path, turn=2.4, points=60):
@@ -45,10 +45,10 @@ def helix(path, turn=2.4, points=60):
     path = table(path, x=R * np.sin(a), y=R * (1 - np.cos(a)), z=RISE * a, EI=ei, EI2=ei2, GJ=gj,
                  rho_A=0.4 * (1 - 0.3 * f), rho_Ip=3e-5, roll=40.0 * f)  # fmt: skip
     at = lambda s: s / length  # noqa: E731
-    stiff = lambda s: [1.1 * (1 - 0.2 * at(s)), 2.0 * (1 - 0.4 * at(s)), 5.0 * (1 - 0.4 * at(s))]  # noqa: E731
+    stiff = lambda s: [1.1, 2.0, 5.0] * (1 - np.outer(at(s), [0.2, 0.4, 0.4]))  # noqa: E731
     frame = lambda s: helix_frame(s, np.radians(40.0 * at(s)))  # noqa: E731
     spin = 3e-5 * np.array([1, 2 / 7, 5 / 7])
-    return path, rod_hz(frame, stiff, lambda s: 0.4 * (1 - 0.3 * at(s)), lambda s: spin, length, 5)
+    return path, frequencies(frame, length, stiff, lambda s: 0.4 * (1 - 0.3 * at(s)), spin)[:5] / (2 * np.pi)
 
 
 def test_a_helix_converges_to_ritz_with_order_four(tmp_path):
@@ -69,12 +69,13 @@ ARC = np.linspace(0.0, np.pi / 2, 200)
 def test_a_quarter_circle_in_its_plane_and_out_of_it_has_order_four(space, tmp_path):
     path = table(tmp_path / "arc.csv", x=np.sin(ARC), y=1 - np.cos(ARC), EI=2.0, EI2=3.0, GJ=1.5, rho_A=0.7,
                  rho_Ip=1e-5)  # fmt: skip
-    spin = 1e-5 * np.array([1, 0.4, 0.6]) * space
+    stiffness, spin = ([1.5, 2, 3], 1e-5 * np.array([1, 0.4, 0.6])) if space else ([1e9, 2, 1e9], 0)
 
     def frame(s):
-        return np.array([[np.cos(s), 0, -np.sin(s)], [np.sin(s), 0, np.cos(s)], [0, -1, 0]])
+        t, u = np.stack([np.cos(s), np.sin(s), 0 * s], axis=1), np.stack([-np.sin(s), np.cos(s), 0 * s], axis=1)
+        return np.stack([t, np.cross(u, t), u], axis=2)
 
-    exact = rod_hz(frame, lambda s: [1.5, 2, 3], lambda s: 0.7, lambda s: spin, np.pi / 2, 3, planar=not space)
+    exact = frequencies(frame, np.pi / 2, lambda s: stiffness, lambda s: 0.7, spin)[:3] / (2 * np.pi)
     rod = read_rod(path, in_space=space)
     chains = [curved_chain(rod, np.linspace(0.0, rod.s[-1], n + 1)) for n in (20, 40)]
     errors = [one.frequencies_hz(n_modes=3) / exact - 1 for one in chains]
