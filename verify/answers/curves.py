@@ -12,7 +12,7 @@ from verify.analysis.verdict import FINE, Margin
 from verify.answers.chains import steps_of
 from verify.blas import one_blas_thread
 from verify.engines.choice import default_steps
-from verify.engines.curved import ALIKE, CurvedChain, converged, curved_chain
+from verify.engines.curved import ALIKE, CurvedChain, curved_chain
 from verify.engines.damping import asked
 from verify.engines.description import MOST_LINKS, with_dashpots
 from verify.engines.rod import read_rod
@@ -23,9 +23,6 @@ from verify.formatting import with_unit
 from verify.report.result import Column, Result, Table
 from verify.settings import wall_label
 from verify.validation import check_integer, check_number
-
-ROUNDED = 1e-6
-"""Relative error up to which the digits of a table's points are in its observed order."""
 
 
 @one_blas_thread()
@@ -71,16 +68,14 @@ def curve_chain(
 def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
     """Verdict, joints and links, frequencies next to those of the rod, and the order of its errors."""
     hertz, n = chain.frequencies_hz(n_modes=mode), chain.count
-    exact, orders = converged(chain.rod, chain.nodes, mode)
-    if len(exact) < mode:
-        raise InputError(f"count = {n}: the chain has {len(exact)} modes, raise it or lower mode")
-    errors, steps = hertz / exact - 1.0, np.diff(chain.nodes)
+    if len(hertz) < mode:
+        raise InputError(f"count = {n}: the chain has {len(hertz)} modes, raise it or lower mode")
+    exact, steps = chain.exact_hz(n_modes=mode), np.diff(chain.nodes)
+    errors = hertz / exact - 1.0
     columns = [Column("mode"), Column("rod", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
-    columns += [Column("error", format="+.3g", percent=True), Column("order", format=".2f")]
-    shown = [x if x > 0.5 and abs(e) > ROUNDED else None for x, e in zip(orders, errors, strict=True)]
-    rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), shown, strict=True))
-    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 2 and as of order 2. "
-    note += "Orders are of errors above 1e-4 % without a change of sign."
+    columns.append(Column("error", format="+.3g", percent=True))
+    rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), strict=True))
+    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 1 and 2."
     worst = int(abs(errors).argmax())
     words: dict[str, Any] = {"where": f"at mode {worst + 1}", "remedy": "give more links"}
     words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
@@ -94,5 +89,5 @@ def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
         summary += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}"
         ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
         tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
-    own = data(chain) | {"rod_hz": exact, "orders": orders}
+    own = data(chain) | {"rod_hz": exact}
     return Result(f"{summary}.", tables, warnings=warnings, margins=margins, data=own)

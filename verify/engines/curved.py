@@ -95,7 +95,7 @@ class CurvedChain(RigidChain):
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
-        return converged(self.rod, self.nodes, n_modes)[0]
+        return rod_hz(self.rod, self.nodes, n_modes)
 
     def rest_angle(self, j: int) -> float:
         """Rotation between the links at a joint, rad, 0 at the wall."""
@@ -165,17 +165,14 @@ def _compliances(rod: Rod, nodes: Array, edges: Array, integrals: Array) -> tupl
 
 
 @lru_cache(maxsize=16)
-def converged(rod: Rod, nodes: tuple[float, ...], n_modes: int) -> tuple[Array, Array]:
-    """(frequencies of the rod, Hz, observed orders), (n_modes,), by Richardson from links in 1, 2 and 4 parts."""
+def rod_hz(rod: Rod, nodes: tuple[float, ...], n_modes: int) -> Array:
+    """Frequencies of the rod, (n_modes,), Hz, from links in 2 and 4 parts, of long chains in 1 and 2.
+
+    Extrapolated as of order 2: of order 4 the error is 2 % of that of the chain, of long chains 27 %.
+    """
     n, hertz = len(nodes) - 1, list[Array]()
-    parts = (1, 2, 4) if 4 * n * (1 + 2 * rod.in_space) <= MOST else (1, 2)
-    for part in parts:
+    for part in (2, 4) if 4 * n * (1 + 2 * rod.in_space) <= MOST else (1, 2):
         finer = np.interp(np.arange(n * part + 1) / part, np.arange(n + 1), nodes)
         hertz.append(curved_chain(rod, finer).frequencies_hz(n_modes=n_modes))
-    few = min(map(len, hertz))
-    steps, orders = np.diff([one[:few] for one in hertz], axis=0), np.full(few, np.nan)
-    if len(parts) == 3:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            orders = np.log2(steps[0] / steps[1])
-    used = np.clip(np.nan_to_num(orders, nan=2.0), 1.0, 4.0)  # 2 where an error changes its sign
-    return hertz[-1][:few] + steps[-1] / (2.0**used - 1.0), orders
+    coarse, fine = (one[: len(hertz[0])] for one in hertz)
+    return np.asarray(fine + (fine - coarse) / 3.0)

@@ -112,13 +112,6 @@ def roll_pitch_yaw(turn: Array) -> Array:
     return np.array([np.arctan2(turn[2, 1], turn[2, 2]), pitch, np.arctan2(turn[1, 0], turn[0, 0])])
 
 
-def quaternion(turn: Array) -> Array:
-    """Quaternion of a rotation, (4,), its scalar first."""
-    (cx, cy, cz), (sx, sy, sz) = (f(0.5 * roll_pitch_yaw(turn)) for f in (np.cos, np.sin))
-    one, other = (cx * cy * cz, sx * cy * cz, cx * sy * cz, cx * cy * sz), (sx * sy, -cx * sy, sx * cy, -sx * sy)
-    return np.array([a + b * c for a, b, c in zip(one, other, (sz, sz, sz, cz), strict=True)])
-
-
 def notes(chain: RigidChain) -> str:
     """What the chain is and what it is expected to show, in lines."""
     beam, mirrored = chain.beam, ", joint 0 at the right end of the beam" * chain.mirrored
@@ -155,11 +148,15 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     if chain.steps and chain.steps.engine == "MuJoCo":
         rule = chain.steps.integrator
     rule, _, flag = rule.partition(" without ")
+    from scipy.spatial.transform import Rotation
+
     options = f' viscosity="{chain.viscosity!r}"' if chain.viscosity else ""
     flags = f'<flag {flag}="disable"/>' if flag else ""
     bodies, begun = "", False
     for one in tree(chain):
-        turned = f' quat="{numbers(quaternion(one["turn"]))}"' if one["turned"] else ""
+        turned = (
+            f' quat="{numbers(Rotation.from_matrix(one["turn"]).as_quat(scalar_first=True))}"' if one["turned"] else ""
+        )
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]}"{turned}>'
         more = f' armature="{one["armature"]!r}"' if one["armature"] else ""
         kind = "hinge" if one["kind"] == "revolute" else "slide"
