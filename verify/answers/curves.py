@@ -8,20 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from verify.analysis.verdict import FINE, Margin
-from verify.answers.chains import steps_of
+from verify.answers.chains import chain_result, steps_of
 from verify.blas import one_blas_thread
 from verify.engines.choice import default_steps
-from verify.engines.curved import ALIKE, CurvedChain, curved_chain
+from verify.engines.curved import curved_chain
 from verify.engines.damping import asked
 from verify.engines.description import MOST_LINKS, with_dashpots
 from verify.engines.rod import read_rod
-from verify.engines.running import chain_runs
-from verify.engines.writers import data, table, write
+from verify.engines.writers import write
 from verify.errors import InputError
-from verify.formatting import with_unit
-from verify.report.result import Column, Result, Table
-from verify.settings import wall_label
+from verify.report.result import Result
 from verify.validation import check_integer, check_number
 
 
@@ -61,33 +57,5 @@ def curve_chain(
     engine = engine or "MuJoCo" * own.endswith((".xml", ".mjcf"))
     if engine:
         chain = default_steps(chain, steps_of(engine, inf, bool(ratio))[0], mode, error)
-    result = _curve_result(chain, mode, error)
+    result = chain_result(chain, mode, error)
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
-
-
-def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
-    """Verdict, joints and links, frequencies next to those of the rod, and the order of its errors."""
-    hertz, n = chain.frequencies_hz(n_modes=mode), chain.count
-    if len(hertz) < mode:
-        raise InputError(f"count = {n}: the chain has {len(hertz)} modes, raise it or lower mode")
-    exact, steps = chain.exact_hz(n_modes=mode), np.diff(chain.nodes)
-    errors = hertz / exact - 1.0
-    columns = [Column("mode"), Column("rod", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
-    columns.append(Column("error", format="+.3g", percent=True))
-    rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), strict=True))
-    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 1 and 2."
-    worst = int(abs(errors).argmax())
-    words: dict[str, Any] = {"where": f"at mode {worst + 1}", "remedy": "give more links"}
-    words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
-    margins = [Margin(name=f"discretisation of {n} links", **words)]
-    why = "order 2 by a step of EI" if len(chain.rod.jumps) else "order 4 where EI is smooth"
-    why = "order 2 by unequal lengths" if np.ptp(steps) > ALIKE * steps[0] else why
-    summary = f"N = {n} rigid pieces of the curve of {with_unit(chain.nodes[-1], 'm')}, joints and ends on it, {why}; "
-    summary += wall_label(chain.wall)
-    tables, warnings = [table(chain), Table("Frequencies", columns, rows, [note])], list[str]()
-    if chain.steps:
-        summary += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}"
-        ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
-        tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
-    own = data(chain) | {"rod_hz": exact}
-    return Result(f"{summary}.", tables, warnings=warnings, margins=margins, data=own)

@@ -19,6 +19,7 @@ from verify.arrays import Array
 from verify.engines.description import AXES, Axis, Hinge, Joint, Link, RigidChain
 from verify.engines.rod import Rod
 from verify.errors import InputError
+from verify.formatting import with_unit
 from verify.problem.beam import Beam
 from verify.segments.walls import wall_factors
 
@@ -43,6 +44,7 @@ class CurvedChain(RigidChain):
 
     rod: Rod
     nodes: tuple[float, ...]
+    parts: str
     places: Array
     frames: Array
     axes_at: Array
@@ -97,11 +99,6 @@ class CurvedChain(RigidChain):
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
         return rod_hz(self.rod, self.nodes, n_modes)
 
-    def rest_angle(self, j: int) -> float:
-        """Rotation between the links at a joint, rad, 0 at the wall."""
-        apart = np.linalg.norm(self.frames[j] - self.frames[j - 1]) / 8.0**0.5
-        return (j > 0) * float(2.0 * np.arcsin(min(apart, 1.0)))
-
 
 def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
     """The chain with joints at arc lengths `nodes`, (N + 1,), m, from 0 to the length. Raises InputError."""
@@ -141,7 +138,16 @@ def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
     links = tuple(Link(x, length, m, at, tuple(own), tuple(off)) for x, length, m, (at, *off), own in rows)
     about = np.stack([-axes[:, :, 1], axes[:, :, 2], axes[:, :, 0]], axis=1)[:, : len(turning)]
     order, world = np.repeat(np.arange(n), len(turning)), np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
-    shape: dict[str, Any] = {"nodes": tuple(nodes.tolist()), "places": places, "frames": frames, "axes_at": axes}
+    steps, why = np.diff(nodes), "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI is smooth"
+    why = "order 2 by unequal lengths" if np.ptp(steps) > ALIKE * steps[0] else why
+    parts = f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
+    shape: dict[str, Any] = {
+        "parts": parts,
+        "nodes": tuple(nodes.tolist()),
+        "places": places,
+        "frames": frames,
+        "axes_at": axes,
+    }
     shape |= {"hinges": (places[order], about.reshape(-1, 3), order)}
     shape |= {"bodies": (masses, places[:-1] + np.einsum("nij,nj->ni", frames, centres), world)}
     return CurvedChain(beam, wall, joints, links, in_space=rod.in_space, rod=rod, **shape)

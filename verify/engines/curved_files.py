@@ -18,7 +18,7 @@ from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.rod import VALUES, Rod, spline
 from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links, written
-from verify.engines.stiffness_law import ALIKE, ROUGH, Law
+from verify.engines.stiffness_law import ALIKE, Law
 from verify.errors import InputError, shown
 from verify.formatting import with_unit
 from verify.settings import WALLS, wall_label
@@ -76,20 +76,18 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         raise InputError(f"{name}: {str(error).partition(':')[0]}: correct them") from None
     rod = _rod(lines, laws, plane)
     meant = curved_chain(rod, np.unique(rod.s))
-    odd, first = [j for law in laws for j in law.odd], 3 if meant.wall == "gregory" else 1
-    judged, correct = list[Judged](), list[Array]()
+    odd, judged, correct = [j for law in laws for j in law.odd], list[Judged](), list[Array]()
     for line, law, values, rule in zip(lines, laws, means, rules, strict=True):
-        k, twists = line.springs, line.turns == "torsion" and not rod.bent
+        wall = "half" if line.turns == "torsion" and not rod.bent else meant.wall
         best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
-        right = abs(k[0] / best[0] - 1.0) < 0.5 * ROUGH if twists else rule in (wall_label(meant.wall), SERIES, ADAPTED)
-        text = f"{2.0 * k[0] / best[0]:.4g} GJ/l at the wall" if twists and not held else rule
-        springs = np.where((np.arange(len(k)) < (1 if twists else first)) & (not (held or odd or right)), best, k)
-        wrong = [text] * (not right)
+        known, first = rule in (wall_label(wall), SERIES, ADAPTED), np.arange(len(best)) < len(WALLS[wall].weights)
+        springs = np.where(first & (not (held or odd or known)), best, line.springs)
+        wrong = [rule] * (not known)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
         names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
         level = float(law.joints[0])
         law_text = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(level)
-        judged.append(Judged(line, meant, meant, text, level, springs, wrong, [], [], names, law_text))
+        judged.append(Judged(line, meant, meant, rule, level, springs, wrong, [], [], names, law_text))
         correct.append(springs)
     present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))

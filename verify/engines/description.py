@@ -119,7 +119,7 @@ class RigidChain:
     steps: Steps | None = None
     remarks: tuple[str, ...] = ()
     meant: "RigidChain | None" = None
-    straight, along, reference = True, "the beam", "the exact beam"
+    straight, parts, along, reference = True, "links", "the beam", "the exact beam"
     __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
@@ -146,14 +146,14 @@ class RigidChain:
         return width, thick
 
     def rest_angle(self, j: int) -> float:
-        """Rotation between the links at a joint, rad."""
-        return 0.0
+        """Rotation between the links at a joint, rad, 0 at the wall."""
+        first, last = self.rest(j)[1]
+        return (j > 0) * float(2.0 * np.arcsin(min(np.linalg.norm(first @ last - np.eye(3)) / 8.0**0.5, 1.0)))
 
     def rest(self, j: int) -> tuple[Array, Array]:
         """(place of joint j in the link before, m, rotations from there to its axes and on to its link) at rest."""
-        return np.array([self.links[j - 1].length if j else self.joints[0].position, 0.0, 0.0]), np.stack(
-            [np.eye(3)] * 2
-        )
+        x = self.links[j - 1].length if j else self.joints[0].position
+        return np.array([x, 0.0, 0.0]), np.stack([np.eye(3)] * 2)
 
     @property
     def supported(self) -> tuple[bool, bool]:
