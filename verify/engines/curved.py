@@ -138,7 +138,7 @@ def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
     links = tuple(Link(x, length, m, at, tuple(own), tuple(off)) for x, length, m, (at, *off), own in rows)
     about = np.stack([-axes[:, :, 1], axes[:, :, 2], axes[:, :, 0]], axis=1)[:, : len(turning)]
     order, world = np.repeat(np.arange(n), len(turning)), np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
-    steps, why = np.diff(nodes), "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI is smooth"
+    steps, why = np.diff(nodes), "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
     why = "order 2 by unequal lengths" if np.ptp(steps) > ALIKE * steps[0] else why
     parts = f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
     shape: dict[str, Any] = {

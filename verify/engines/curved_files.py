@@ -80,9 +80,9 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     for line, law, values, rule in zip(lines, laws, means, rules, strict=True):
         wall = "half" if line.turns == "torsion" and not rod.bent else meant.wall
         best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
-        known, first = rule in (wall_label(wall), SERIES, ADAPTED), np.arange(len(best)) < len(WALLS[wall].weights)
-        springs = np.where(first & (not (held or odd or known)), best, line.springs)
-        wrong = [rule] * (not known)
+        fits, first = rule in (wall_label(wall), SERIES, ADAPTED), np.arange(len(best)) < len(WALLS[wall].weights)
+        springs = np.where(first & (not (held or odd or fits)), best, line.springs)
+        wrong = [rule] * (not fits)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
         names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
         level = float(law.joints[0])
