@@ -102,71 +102,68 @@ class CurvedChain(RigidChain):
 
 def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
     """The chain with joints at arc lengths `nodes`, (N + 1,), m, from 0 to the length. Raises InputError."""
-    n, places, middles = len(nodes) - 1, rod.place(nodes), 0.5 * (nodes[1:] + nodes[:-1])
-    edges = np.append(np.stack([nodes[:-1], middles], axis=1), nodes[-1])
-    s, weights = rod.quadrature(edges)
-    part, values = np.clip(np.searchsorted(edges, s) - 1, 0, 2 * n - 1), rod.at(s)
-    link, chords, sections = part // 2, np.diff(places, axis=0), rod.frames(edges)
-    lengths = np.linalg.norm(chords, axis=1)
-    ways, axes = chords / lengths[:, None], sections[::2][:n]
+    n, places, edges = len(nodes) - 1, rod.place(nodes), np.sort(np.append(nodes, 0.5 * (nodes[1:] + nodes[:-1])))
+    chords, sections = np.diff(places, axis=0), rod.frames(edges)
+    lengths, axes = np.linalg.norm(chords, axis=1), sections[:-1:2]
+    ways = chords / lengths[:, None]
     if np.einsum("ni,ni->n", ways, np.vstack([axes[:1, :, 0], ways[:-1]])).min() < BACK:
         raise InputError("curve: two links point in opposite directions, give more links or points along the turn")
     across = np.cross(sections[1::2, :, 2], ways)
     across /= np.linalg.norm(across, axis=1)[:, None]
     frames = np.stack([ways, across, np.cross(ways, across)], axis=2)
+    masses, centres, inertias = _bodies(rod, nodes, places, frames)
+    soft, wall = _compliances(rod, edges)
 
-    heavy = weights * values[:, 3]
-    masses, local = np.bincount(link, heavy, n), np.einsum("qji,qj->qi", frames[link], rod.place(s) - places[link])
-    centres = np.stack([np.bincount(link, heavy * x, n) for x in local.T], axis=1) / masses[:, None]
-    spread = np.stack([np.bincount(link, heavy * x**2, n) for x in (local - centres[link]).T], axis=1)
-    inertias = spread.sum(axis=1)[:, None] - spread
-    both = values[:, :2] / values[:, :2].sum(axis=1)[:, None]  # rho I of a section of one material
-    for i, share in enumerate((1.0, *both.T) if rod.in_space else ()):
-        inertias[:, i] += np.bincount(link, weights * values[:, 4] * share, n)
-    if not rod.in_space:
-        inertias[:] = inertias[:, 1:2]
-
-    soft, wall = _compliances(
-        rod, nodes, edges, np.stack([np.bincount(part, weights / k) for k in values.T[:3]], axis=1)
-    )
-    turning = AXES if rod.in_space else AXES[:1]
-    springs = np.append(1.0 / soft, np.zeros((1, 3)), axis=0).tolist()
-    starts, (ei, mass) = np.append(0.0, np.cumsum(lengths)).tolist(), rod.values[0, [0, 3]].tolist()
+    turning, (ei, mass) = AXES if rod.in_space else AXES[:1], rod.values[0, [0, 3]].tolist()
+    springs, starts = np.append(1.0 / soft, np.zeros((1, 3)), axis=0), np.append(0.0, np.cumsum(lengths)).tolist()
     beam = Beam(length=starts[-1], supports=("clamped", "free"), bending_stiffness=ei, mass_per_length=mass)
-    joints = tuple(Joint(x, tuple(map(Hinge, turning, k))) for x, k in zip(starts, springs, strict=True))
+    joints = tuple(Joint(x, tuple(map(Hinge, turning, k))) for x, k in zip(starts, springs.tolist(), strict=True))
     rows = zip(starts, lengths.tolist(), masses.tolist(), centres.tolist(), inertias.tolist(), strict=False)
     links = tuple(Link(x, length, m, at, tuple(own), tuple(off)) for x, length, m, (at, *off), own in rows)
     about = np.stack([-axes[:, :, 1], axes[:, :, 2], axes[:, :, 0]], axis=1)[:, : len(turning)]
     order, world = np.repeat(np.arange(n), len(turning)), np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
-    steps, why = np.diff(nodes), "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
-    why = "order 2 by unequal lengths" if np.ptp(steps) > ALIKE * steps[0] else why
-    parts = f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
-    shape: dict[str, Any] = {
-        "parts": parts,
-        "nodes": tuple(nodes.tolist()),
-        "places": places,
-        "frames": frames,
-        "axes_at": axes,
-    }
-    shape |= {"hinges": (places[order], about.reshape(-1, 3), order)}
+    shape: dict[str, Any] = {"parts": _parts(rod, nodes), "nodes": tuple(nodes.tolist()), "places": places}
+    shape |= {"frames": frames, "axes_at": axes, "hinges": (places[order], about.reshape(-1, 3), order)}
     shape |= {"bodies": (masses, places[:-1] + np.einsum("nij,nj->ni", frames, centres), world)}
     return CurvedChain(beam, wall, joints, links, in_space=rod.in_space, rod=rod, **shape)
 
 
-def _compliances(rod: Rod, nodes: Array, edges: Array, integrals: Array) -> tuple[Array, str]:
-    """(compliances of the joints, (N, 3), rad/N m, rule at the wall).
+def _parts(rod: Rod, nodes: Array) -> str:
+    """What the links are, and the order of their errors."""
+    why = "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
+    why = "order 2 by unequal lengths" if np.ptp(h := np.diff(nodes)) > ALIKE * h[0] else why
+    return f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
 
-    `edges`: of half links, (2 N + 1,), with the `integrals` of ds/EI, ds/EI2, ds/GJ, (2 N, 3).
-    """
-    n, near, h = len(nodes) - 1, AT * nodes[-1], np.diff(nodes)
-    stepped = np.searchsorted(rod.jumps, edges[1:] - near) > np.searchsorted(rod.jumps, edges[:-1] + near)
-    at = np.stack([nodes[:-1] + near, nodes[1:] - near], axis=1).ravel()
-    half = np.where(stepped[:, None], integrals, 0.5 * np.repeat(h, 2)[:, None] / rod.at(at)[:, :3])
-    soft = np.vstack([half[:1], half[1:-1:2] + half[2::2]])
-    if np.ptp(h[:3]) > ALIKE * h[0] or ((rod.jumps > near) & (rod.jumps < edges[:6][-1])).any():
+
+def _bodies(rod: Rod, nodes: Array, places: Array, frames: Array) -> tuple[Array, Array, Array]:
+    """Masses, (N,), centres from the joints and principal inertias of the pieces in their `frames`, (N, 3)."""
+    s, weights = rod.quadrature(nodes)
+    n, values, link = len(frames), rod.at(s), np.searchsorted(nodes[1:-1], s)
+    heavy, local = weights * values[:, 3], np.einsum("qji,qj->qi", frames[link], rod.place(s) - places[link])
+    masses = np.bincount(link, heavy, n).astype(float)
+    centres = np.stack([np.bincount(link, heavy * x, n) for x in local.T], axis=1) / masses[:, None]
+    spread = np.stack([np.bincount(link, heavy * x**2, n) for x in (local - centres[link]).T], axis=1)
+    inertias = spread.sum(axis=1)[:, None] - spread
+    if not rod.in_space:
+        return masses, centres, np.repeat(inertias[:, 1:2], 3, axis=1)
+    both = values[:, :2] / values[:, :2].sum(axis=1)[:, None]  # rho I of a section of one material
+    sections = [np.bincount(link, weights * values[:, 4] * share, n) for share in (1.0, *both.T)]
+    return masses, centres, inertias + np.stack(sections, axis=1)
+
+
+def _compliances(rod: Rod, edges: Array) -> tuple[Array, str]:
+    """(compliances of the joints, (N, 3), rad/N m, rule at the wall), by the `edges` of half links, (2 N + 1,)."""
+    (s, weights), near, parts = rod.quadrature(edges), AT * edges[-1], len(edges) - 1
+    ends = np.where(np.arange(parts) % 2, edges[1:] - near, edges[:-1] + near)  # those at joints
+    half = 0.5 * np.repeat(np.diff(edges[::2]), 2)[:, None] / rod.at(ends)[:, :3]
+    inside, part = np.searchsorted(rod.jumps, [edges[:-1] + near, edges[1:] - near]), np.searchsorted(edges[1:-1], s)
+    integrals = np.stack([np.bincount(part, weights / one, parts) for one in rod.at(s)[:, :3].T], axis=1)
+    half = np.where((inside[0] < inside[1])[:, None], integrals, half)
+    soft, h = np.vstack([half[:1], half[1:-1:2] + half[2::2]]), np.diff(edges[:8:2])
+    if np.ptp(h) > ALIKE * h[0] or ((rod.jumps > near) & (rod.jumps < edges[:6][-1])).any():
         return soft, "half"
-    factors = wall_factors(("clamped", "free"), n, "gregory")[:3][:n] / np.append(0.5, np.ones(2))[:n]
-    soft[:3, : 2 + rod.bent] *= factors[:, None]
+    factors = wall_factors(("clamped", "free"), len(soft), "gregory")[:-1] / np.append(0.5, np.ones(len(soft) - 1))
+    soft[:, : 2 + rod.bent] *= factors[:, None]
     return soft, "gregory"
 
 
