@@ -119,6 +119,14 @@ def test_a_stepped_line_has_order_two_against_the_exact_beam(tmp_path):
     assert abs(off).max() < 2e-2  # a step inside a link, by the integral of its compliance
 
 
+@pytest.mark.parametrize("damping", ["2% at 3", "2% at 8 Hz"])
+def test_dashpots_give_the_ratio_of_a_mode_or_at_a_frequency(damping, tmp_path):
+    found = curve_chain(helix(tmp_path / "helix.csv")[0], 20, damping=damping).data
+    hertz = found["expected"]["coupled"]["frequencies_hz"][2] if damping.endswith("3") else 8.0
+    hinges = [hinge for joint in found["joints"][:-1] for hinge in joint.hinges]
+    assert [h.damping / h.stiffness for h in hinges] == pytest.approx([0.04 / (2 * np.pi * hertz)] * 60, rel=1e-9)
+
+
 def test_sizes_between_points_are_those_of_a_cone(tmp_path):
     path = table(tmp_path / "cone.csv", x=[0.0, 1.2], y=0.0, diameter=[6e-3, 3e-3])
     joints = curve_chain(path, 12, overrides=["E=2GPa", "rho=900"], error=0.3).data["joints"]

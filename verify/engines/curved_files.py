@@ -85,9 +85,8 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         wrong = [rule] * (not fits)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
         names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
-        level = float(law.joints[0])
-        law_text = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(level)
-        judged.append(Judged(line, meant, meant, rule, level, springs, wrong, [], [], names, law_text))
+        text, level = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(law.joints[0]), float(law.joints[0])
+        judged.append(Judged(line, meant, meant, rule, level, springs, wrong, [], [], names, text))
         correct.append(springs)
     present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))
@@ -155,8 +154,7 @@ def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain) -> Curve
     curve, rows, hinges = lines[0].curve, list[tuple[Hinge, ...]](), list[tuple[int, Array]]()
     for j in range(meant.count):
         found = [(one, float(k[j])) for one, k in zip(lines, springs, strict=True) if not np.isnan(k[j])]
-        each = [(one.axis, k, float(one.dashpots[j]), float(one.armatures[j])) for one, k in found]
-        rows.append(tuple(Hinge(*values) for values in each))
+        rows.append(tuple(Hinge(one.axis, k, float(one.dashpots[j]), float(one.armatures[j])) for one, k in found))
         hinges += [(j, one.curve.hinges[j]) for one, _ in found]
     first, length = np.array([j for j, _ in hinges]), float(lines[0].links[:, 0].sum())
     joints = tuple(Joint(old.position, each) for old, each in zip(meant.joints, [*rows, ()], strict=True))

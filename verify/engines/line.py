@@ -118,9 +118,8 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         ways[-1] /= np.linalg.norm(ways[-1])
     centre = np.einsum("ni,ni->n", centres - places, ways)
     if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
-        raise InputError(
-            f"{name}: centres of mass are off the lines between its joints, give links from joint to joint"
-        )
+        text = "centres of mass are off the lines between its joints, give links from joint to joint, or more of them"
+        raise InputError(f"{name}: {text}")
     share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
     last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
     heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
