@@ -5,7 +5,7 @@ is the one by which all its joints have the same EI. Without a beam next to it, 
 """
 
 import itertools
-from math import pi
+from math import isnan, pi
 from typing import Any, NamedTuple
 
 import msgspec
@@ -126,7 +126,8 @@ def _on_spring(line: Line, beam: Beam, theory: Any) -> Judged:
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
     """A line with springs, (N,), N m/rad, as a chain about `line.turns`."""
     edges = np.append(0.0, np.cumsum(line.links[:, 0])).tolist()
-    hinges = [() if np.isnan(one) else (Hinge(line.turns, float(one)),) for one in [*springs, 0.0]]
+    each = np.pad([springs, line.dashpots, line.armatures], ((0, 0), (0, 1))).T.tolist()
+    hinges = [() if isnan(k) else (Hinge(line.turns, k, dashpot, armature),) for k, dashpot, armature in each]
     rows = zip(edges, line.links.tolist(), strict=False)
     links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)
