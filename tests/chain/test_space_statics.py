@@ -143,12 +143,10 @@ def test_about_an_equilibrium_its_plane_has_the_frequencies_of_the_planar_chain(
 
 @pytest.mark.parametrize(("radius", "pitch"), [(L / 2.1, 0.0), (L / 4.1, 0.05)])
 def test_arcs_and_helices_at_rest_have_the_frequencies_of_rods_with_order_four(radius, pitch):
-    curve, axes = helix(radius, pitch)
+    axes = helix(radius, pitch)
     turn = axes(np.zeros(1))[0].T @ [0.0, 0.0, 1.0 / np.hypot(radius, pitch)]
     mass = ROD.mass_per_length
-    exact = frequencies(curve, axes, L, lambda s: np.tile(STIFFNESS, (len(s), 1)), lambda s: mass + 0 * s)[:3] / (
-        2 * pi
-    )
+    exact = frequencies(axes, L, lambda s: STIFFNESS, lambda s: mass)[:3] / (2 * pi)
     errors = []
     for n in (25, 50):
         rod = bend_in_space(ROD, n, curvature=lambda s: np.tile(turn, (len(s), 1)), stiffness=STIFFNESS)

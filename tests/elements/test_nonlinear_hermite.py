@@ -67,7 +67,7 @@ def test_an_arc_has_the_frequencies_of_an_inextensible_rod_with_order_four():
     def stiffness(s):
         return np.outer(np.ones(len(s)), [1e7, 1e7, EI])  # torsion and the other plane are far above
 
-    exact = frequencies(*helix(radius, 0.0), L, stiffness, lambda s: RHO_A + 0 * s)[:2] / (2 * pi)
+    exact = frequencies(helix(radius, 0.0), L, stiffness, lambda s: RHO_A)[:2] / (2 * pi)
     models = (replace(elements(n, axial=1e8), curvature=lambda s: 0 * s + 1 / radius) for n in (6, 12))
     errors = [model.bend().frequencies_hz()[:2] / exact - 1 for model in models]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)

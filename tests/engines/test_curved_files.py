@@ -7,7 +7,8 @@ import pytest
 
 from tests.engines.test_chain_files import mujoco_hz
 from tests.engines.test_curves import helix
-from tests.reference.curved_rod import rod_hz
+from tests.reference.curved_rods import frequencies
+from tests.reference.curved_rods import helix as ring_axes
 from verify import Beam
 from verify.answers.curves import curve_chain
 from verify.engines.judgement import judge_file
@@ -39,11 +40,9 @@ def judged(path, text, **options):
 
 
 def arc_hz(turn, radius):
-    def frame(s):
-        c, d = np.cos(s / radius), np.sin(s / radius)
-        return np.array([[c, -d, 0], [d, c, 0], [0, 0, 1]])
-
-    return rod_hz(frame, lambda s: [1, 1, K * L], lambda s: RHO, lambda s: [0, 0, 0], turn * radius, 3, planar=True)
+    return frequencies(ring_axes(radius, 0), turn * radius, lambda s: [1e9, 1e9, K * L], lambda s: RHO)[:3] / (
+        2 * np.pi
+    )
 
 
 @pytest.mark.parametrize("rest", ["euler", "spring"])
@@ -84,19 +83,19 @@ def test_two_stiffnesses_on_a_curve_are_steps(tmp_path):
 
 
 def test_a_file_in_space_means_its_rod(tmp_path):
-    path, exact = helix(tmp_path / "helix.csv")
+    path, exact = helix(tmp_path / "helix.csv", points=240)
     curve_chain(path, 24, mode=3, path=tmp_path / "helix.xml")
     result = judge_file(tmp_path / "helix.xml", None, 3)
     (coupled,) = result.data["chains"]
     assert [one.split(":")[0] for one in result.data["rules"]] == ["bending", "width", "torsion"]
-    assert coupled["exact_hz"] == pytest.approx(exact[:3], rel=1e-3)
+    assert coupled["exact_hz"] == pytest.approx(exact[:3], rel=3e-6)
     assert coupled["frequencies_hz"] == pytest.approx(mujoco_hz(tmp_path / "helix.xml")[:3], rel=1e-6)
     assert result.data["passed"]
     assert coupled["faults"] == []
 
 
 def test_hinges_about_the_axes_of_one_link_are_of_order_one(tmp_path):
-    """EI and GJ mix by half a rest angle; about the axes half way between links the order is two."""
+    """EI and GJ mix by half a rest angle; about the axes of the rod at the joints the order is four."""
     path, exact = helix(tmp_path / "helix.csv")
     errors = []
     for n in (20, 40):
@@ -108,9 +107,9 @@ def test_hinges_about_the_axes_of_one_link_are_of_order_one(tmp_path):
         files = [mujoco_hz(tmp_path / name)[0] / exact[0] - 1.0 for name in ("links.xml", "helix.xml")]
         errors.append(files)
         (fault,) = judge_file(tmp_path / "links.xml", None, 3).data["chains"][0]["faults"]
-        assert "half way between links" in fault
-    assert np.log2(np.divide(*errors)) == pytest.approx([1.0, 2.0], abs=0.1)
-    assert errors[0][0] > 10.0 * abs(errors[0][1])
+        assert "off the axes of the rod" in fault
+    assert np.log2(np.divide(*errors)) == pytest.approx([1.0, 4.1], abs=0.2)
+    assert errors[0][0] > 1e3 * abs(errors[0][1])
 
 
 def test_a_tapered_blade_needs_no_scene(tmp_path):
@@ -124,9 +123,9 @@ def test_a_tapered_blade_needs_no_scene(tmp_path):
         text += 'contype="0" conaffinity="0"/>'
     text = f'<mujoco><option gravity="0 0 0" timestep="1e-5"/><worldbody>{text}{"</body>" * n}</worldbody></mujoco>'
     found = judged(tmp_path / "blade.xml", text).data["chains"][0]
-    stiff = lambda s: [1, 1, 7e10 * width(s) * thick(s) ** 3 / 12]  # noqa: E731
-    mass = lambda s: 2700 * width(s) * thick(s)  # noqa: E731
-    exact = rod_hz(lambda s: np.eye(3), stiff, mass, lambda s: [0, 0, 0], length, 3, planar=True)
+    stiff = lambda s: np.outer(width(s) * thick(s) ** 3, [1e18, 1e18, 7e10 / 12])  # noqa: E731
+    axes, mass = (lambda s: np.tile(np.eye(3), (len(s), 1, 1))), (lambda s: 2700 * width(s) * thick(s))
+    exact = frequencies(axes, length, stiff, mass)[:3] / (2 * np.pi)
     assert found["exact_hz"] == pytest.approx(exact, rel=2e-3)
     assert found["faults"] == [wall_label("full")]
 
@@ -141,3 +140,23 @@ def test_a_curve_is_no_straight_beam_and_has_a_clamp(tmp_path):
         judged(path, ring([0.0, *[K] * 15]))
     with pytest.raises(InputError, match="follows no"):
         judged(path, ring((K * np.random.default_rng(3).uniform(0.5, 2.0, N)).tolist()))
+
+
+def test_chords_are_right_below_the_limit_and_their_centres_are_the_remedy_above(tmp_path):
+    """Of a chain of pieces with the centres of mass on the chords: order two in place of four."""
+    path, exact = helix(tmp_path / "helix.csv", points=240)
+    errors = {}
+    for n in (12, 24):
+        curve_chain(path, n, path=tmp_path / "pieces.xml")
+        text = re.sub(r'(<inertial pos="\S+) [^"]*"', r'\1 0 0"', (tmp_path / "pieces.xml").read_text())
+        (tmp_path / "chords.xml").write_text(text)
+        for name in ("pieces", "chords"):
+            errors[name, n] = mujoco_hz(tmp_path / f"{name}.xml")[0] / exact[0] - 1.0
+        coarse, fine = (judge_file(tmp_path / "chords.xml", None, 3, within=within) for within in (0.1, 1e-5))
+        assert (coarse.data["passed"], fine.data["passed"]) == (True, False)
+        assert coarse.data["chains"][0]["faults"] == []
+        assert any("centres of mass" in one.remedy for one in fine.margins)
+        pieces = judge_file(tmp_path / "pieces.xml", None, 3)
+        assert not any("centres of mass" in one.remedy for one in pieces.margins)
+    assert np.log2(errors["chords", 12] / errors["chords", 24]) == pytest.approx(2.0, abs=0.2)
+    assert abs(errors["pieces", 24]) < 0.03 * abs(errors["chords", 24])

@@ -38,9 +38,9 @@ def bending_hz(rod):
     def stiffness(s):
         return np.exp(-TAPER * s / L)[:, None] * [1e9, 1e9, rod.bending_stiffness]  # the others are far above
 
-    straight = (lambda s: np.outer(s, [1.0, 0.0, 0.0]), lambda s: np.tile(np.eye(3), (len(s), 1, 1)))
+    straight = lambda s: np.tile(np.eye(3), (len(s), 1, 1))  # noqa: E731
     mass = ROD.mass_per_length
-    return frequencies(*straight, L, stiffness, lambda s: mass * np.exp(-TAPER * s / L / 2))[:3] / (2 * np.pi)
+    return frequencies(straight, L, stiffness, lambda s: mass * np.exp(-TAPER * s / L / 2))[:3] / (2 * np.pi)
 
 
 def torsion_hz():

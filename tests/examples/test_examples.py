@@ -17,7 +17,7 @@ NUMBERS = {
     "motor_curve": ("no_load", -0.0269, -0.0264),
     "whose_frequencies": ("count", 30, 30),
     "export_chain": ("difference", 1e-15, 1e-9),
-    "catheter_modes": ("order", 1.95, 2.05),
+    "catheter_modes": ("error", 2e-5, 1e-4),
     "volts_to_wave": ("ratio", 2.565, 2.566),
 }
 NOTEBOOKS = {

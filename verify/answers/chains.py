@@ -68,14 +68,14 @@ def engine_chain(
         count = count or fewest(beam, max(mode, highest), error, wall, in_space)
         steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
         chain = damped(make(count), request, steps, drag=own)
-        result = _chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
+        result = chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
     else:
         check_number("step", step, "s", above=0)
         if not engine:
             raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
         plain = [make(n) for n in ([count] if count else _counts(beam, max(mode, highest), error, wall, in_space))]
         chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, own, own or names)
-        result, chain = _chain_result(chosen.chain, mode, error), chosen.chain
+        result, chain = chain_result(chosen.chain, mode, error), chosen.chain
         links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
         why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
         table = _trade_table(rows, chosen, mode, error)
@@ -177,39 +177,37 @@ def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_spa
     raise InputError(f"error = {error!r}: {text}")
 
 
-def _chain_result(chain: RigidChain, mode: int, error: float) -> Result:
+def chain_result(chain: RigidChain, mode: int, error: float) -> Result:
     """Verdict, joints and links, and frequencies next to those of the other rules at a clamped end."""
     held, n = "clamped" in chain.beam.supports, chain.count
-    walls = [name for name in COMPARED if held and name != chain.wall]
+    walls = [name for name in COMPARED if held and chain.straight and name != chain.wall]
     others = {f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls}
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
-    rows, margins = list[tuple[object, ...]](), beam_margins(SolutionCache(chain.beam), (), mode=mode)
-    for axis in chain.axes:
+    rows, margins = list[tuple[object, ...]](), list[Margin]()
+    if chain.straight:
+        margins += beam_margins(SolutionCache(chain.beam), (), mode=mode)
+    for axis in chain.motions:
         hertz, errors = chain.frequencies_hz(axis, mode).tolist(), chain.errors(axis, mode).tolist()
         if len(hertz) < mode:
             raise InputError(f"count = {n}: the chain has {len(hertz)} modes in {axis}, raise it or lower mode")
         every = [[*other.errors(axis, mode).tolist(), *[None] * mode][:mode] for other in others.values()]
         exact = chain.exact_hz(axis, mode).tolist()
         rows += zip([axis] * mode, range(1, mode + 1), exact, hertz, errors, *every, strict=True)
-        margins += [
-            Margin(
-                name=f"discretisation of {n} links in {axis}",
-                size=abs(errors[-1]),
-                where=f"at mode {mode}",
-                remedy="give more links",
-                condition=f"{n} links are enough in {axis}",
-            )
-        ]
+        size, worst = max((abs(one), i) for i, one in enumerate(errors, start=1))
+        name, enough = f"discretisation of {n} links in {axis}", f"{n} links are enough in {axis}"
+        where, remedy = f"at mode {worst}", "give more links"
+        margins.append(Margin(name=name, size=size, where=where, remedy=remedy, condition=enough))
     rule = f", {wall_label(chain.wall)}" if held else ""
     rule += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}" if chain.steps else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored
     if chain.in_space and chain.beam.attached:
         warnings.append("attached masses have their rotary inertia about all axes, springs act in bending alone")
-    tables = [table(chain), Table("Frequencies", columns, rows)]
+    notes = ["Exact is the rod, estimated by links in 2 and 4 parts, of long chains in 1 and 2."] * (not chain.straight)
+    tables = [table(chain), Table("Frequencies", columns, rows, notes)]
     if chain.steps:
         ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
         tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
     else:
         warnings += chain.remarks
-    return Result(f"N = {n} rigid links{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))
+    return Result(f"N = {n} rigid {chain.parts}{rule}.", tables, warnings=warnings, margins=margins, data=data(chain))

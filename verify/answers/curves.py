@@ -2,27 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf, pi
+from math import inf
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from verify.analysis.verdict import FINE, Margin
-from verify.answers.chains import steps_of
+from verify.answers.chains import chain_result, steps_of
 from verify.blas import one_blas_thread
 from verify.engines.choice import default_steps
-from verify.engines.curved import CurvedChain, converged, curved_chain
-from verify.engines.damping import asked
-from verify.engines.description import MOST_LINKS, with_dashpots
+from verify.engines.curved import curved_chain
+from verify.engines.damping import asked, damped
+from verify.engines.description import MOST_LINKS, RigidChain
 from verify.engines.rod import read_rod
-from verify.engines.running import chain_runs
-from verify.engines.writers import data, table, write
-from verify.errors import InputError
-from verify.formatting import with_unit
-from verify.report.result import Column, Result, Table
-from verify.settings import wall_label
-from verify.validation import check_choice, check_integer, check_number
+from verify.engines.writers import write
+from verify.report.result import Result
+from verify.validation import check_integer, check_number
 
 
 @one_blas_thread()
@@ -32,7 +26,6 @@ def curve_chain(
     *,
     mode: int = 3,
     error: float = 0.01,
-    links: Any = "chords",
     section: str = "",
     overrides: Sequence[str] = (),
     in_space: bool = False,
@@ -43,56 +36,19 @@ def curve_chain(
     """Joints and links of a rod along a curve, clamped at its first point and free at its last.
 
     `curve`, `section`, `overrides`, `in_space`: as of `engines.rod.read_rod`. `count`: links of one arc length; by
-    default links run from point to point. `links`: "chords" or "arcs", as of `engines.curved.curved_chain`. `damping`:
-    ratio of one mode. Else as of `engine_chain`; errors are against the rod as finer links estimate it. Raises
-    InputError.
+    default links run from point to point. Else as of `engine_chain`; errors are against the rod as finer links estimate
+    it. Raises InputError.
     """
     check_integer("mode", mode, 1, 100)
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
-    check_choice("links", links, ("chords", "arcs"))
     rod, request, own = read_rod(Path(curve), overrides, section, in_space), asked(damping), str(path or "").lower()
     points = np.unique(rod.s)
     number = len(points) - 1 if count is None else count
     check_integer("count", number, 2, MOST_LINKS // (1 + 3 * rod.in_space))  # matrices are dense
-    chain: Any = curved_chain(rod, points if count is None else np.linspace(0.0, points[-1], number + 1), links)
-    ratio = request.ratios[0]
-    if len(request.ratios) > 1 or request.in_hz or request.compensated:
-        raise InputError(f"damping = {damping!r}: a curved chain has that of one mode, give '1%' or '1% at 2'")
-    if ratio:
-        omega = (2.0 * pi * chain.frequencies_hz(n_modes=int(request.at[0]))).tolist()
-        chain = with_dashpots(chain, dict.fromkeys(chain.axes, 2.0 * ratio / omega[-1]), ratio * omega[0] / omega[-1])
+    chain: RigidChain = curved_chain(rod, points if count is None else np.linspace(0.0, points[-1], number + 1))
     engine = engine or "MuJoCo" * own.endswith((".xml", ".mjcf"))
-    if engine:
-        chain = default_steps(chain, steps_of(engine, inf, bool(ratio))[0], mode, error)
-    result = _curve_result(chain, mode, error)
+    steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
+    chain = damped(chain, request, steps)
+    chain = default_steps(chain, steps, mode, error) if steps else chain
+    result = chain_result(chain, mode, error)
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
-
-
-def _curve_result(chain: CurvedChain, mode: int, error: float) -> Result:
-    """Verdict, joints and links, frequencies next to those of the rod, and how far its ends and length are off."""
-    hertz, n = chain.frequencies_hz(n_modes=mode), chain.count
-    exact, orders = converged(chain.rod, chain.nodes, chain.kind, mode)
-    if len(exact) < mode:
-        raise InputError(f"count = {n}: the chain has {len(exact)} modes, raise it or lower mode")
-    errors, total = hertz / exact - 1.0, float(chain.nodes[-1])
-    short, end = chain.beam.length / total - 1.0, chain.rod.place(np.array([total]))[0]
-    off = float(np.linalg.norm(chain.places[-1] - end))
-    columns = [Column("mode"), Column("rod", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
-    columns += [Column("error", format="+.3g", percent=True), Column("order", format=".2f")]
-    shown = [order if np.isfinite(order) else None for order in orders.tolist()]
-    rows = list(zip(range(1, mode + 1), exact.tolist(), hertz.tolist(), errors.tolist(), shown, strict=True))
-    note = "The rod is estimated by links in 2 and 4 parts, of long chains in 2 and as of order 2."
-    worst = int(abs(errors).argmax())
-    words: dict[str, Any] = {"where": f"at mode {worst + 1}", "remedy": "give more links"}
-    words |= {"size": float(abs(errors[worst])), "condition": f"{n} links are enough"}
-    margins = [Margin(name=f"discretisation of {n} links", **words)]
-    summary = f"N = {n} rigid links along {chain.kind} of {with_unit(total, 'm')}: "
-    summary += f"length {100.0 * short * (abs(short) > 1e-9):+.2g} %, far end "
-    summary += f"{with_unit(off, 'm') if off > 1e-9 * total else '0 m'} off; {wall_label(chain.wall)}"
-    tables, warnings = [table(chain), Table("Frequencies", columns, rows, [note])], list[str]()
-    if chain.steps:
-        summary += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}"
-        ran, margin, texts = chain_runs(chain, chain.steps, mode, max(error, FINE))
-        tables, margins, warnings = [*tables, ran], [*margins, margin], [*warnings, *texts]
-    own = data(chain) | {"rod_hz": exact, "orders": orders, "length_error": short, "end_error": off}
-    return Result(f"{summary}.", tables, warnings=warnings, margins=margins, data=own)

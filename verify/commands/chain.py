@@ -46,7 +46,6 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
     "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
 )
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
-@click.option("--links", type=click.Choice(["chords", "arcs"]), default="chords", help="Of a curve. Default: chords.")
 @click.option("--section", default="", metavar="PHRASE", help="Of a curve: 'round 2 mm E=1GPa rho=1.2g/cm3'.")
 @click.option("--damping", default="0", metavar="Z", help=f"Damping ratio by dashpots, of mode 1, or {EXAMPLES[4:]}.")
 @click.option(
@@ -63,7 +62,6 @@ def chain(
     error: str,
     wall: str,
     in_space: bool,
-    links: str,
     section: str,
     damping: str,
     engine: str,
@@ -85,9 +83,9 @@ def chain(
     if curved := scene.lower().endswith(".csv"):
         if time_step or wall != DEFAULT.wall:
             raise InputError("--step and --wall are not of a curve, leave them out")
-        result = curve_chain(scene, count, links=links, section=section, overrides=overrides, engine=engine, **shared)
-    elif section or links != "chords":
-        raise InputError("--section and --links are of a curve, curve.csv, leave them out")
+        result = curve_chain(scene, count, section=section, overrides=overrides, engine=engine, **shared)
+    elif section:
+        raise InputError("--section is of a curve, curve.csv, leave it out")
     result = (
         result
         if curved

@@ -1,30 +1,32 @@
-"""A chain of rigid links along a curve: joints with rest angles, and what its motions about rest are.
+"""A chain of the rigid pieces of a curve: joints with rest angles, and what its motions about rest are.
 
-Link j runs from node j to the next: its frame has x along the chord, z along `u` of the rod. The joint between two
-links turns about the axes of the rotation half way between their frames: about those of one link, EI and GJ would mix
-by half a rest angle, order 1. Its compliance is the integral of ds/EI between the middles of both links. At the wall
-that is over half a link, or by Gregory's weights times h/EI at the joint where the first three links have one length h
-and no step: both are of order 2 on a curve, the second with half of the error or less (a quarter circle, a taper of
-10 to 1). Bodies carry the rest pose, so that all springs are at rest at zero angles, whatever a format calls the
-reference of a spring.
+Joints lie on the curve and turn about the axes of the rod there. Between them are pieces of the curve: the frame of a
+link has x along its chord, its centre of mass is off that. On either side a joint has the compliance of half a link by
+EI and GJ at the joint; at the wall these are times Gregory's weights where the first three links have one length and no
+step, in torsion only on a curve, where the twisting moment varies. For links of one length this is of order 4
+(docs/theory.md, "Curved rods"), and at steps of order 2: half a link with a step inside has its integral of ds/EI.
+Bodies carry the rest pose, so that all springs are at rest at zero angles, whatever a format calls the reference of a
+spring.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from verify.arrays import Array
 from verify.engines.description import AXES, Axis, Hinge, Joint, Link, RigidChain
-from verify.engines.rod import Rod, transported
+from verify.engines.rod import Rod
 from verify.errors import InputError
+from verify.formatting import with_unit
 from verify.problem.beam import Beam
 from verify.segments.walls import wall_factors
 
-Links = Literal["chords", "arcs"]
 ALIKE = 0.01
 """Relative difference of first links up to which they are alike: Gregory's joint is then off by 0.4 % of a link."""
+AT = 1e-9
+"""Distance over the length of the rod up to which a step is at a joint."""
 BACK = -0.99
 """Cosine between links from which the axes of the joint between are uncertain."""
 MOST = 1500
@@ -33,19 +35,19 @@ MOST = 1500
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CurvedChain(RigidChain):
-    """A chain with joint j at `places`[j], (N + 1, 3), m, and link frames (N, 3, 3), clamped at joint 0, else free.
+    """A chain with joint j at `places`[j], (N + 1, 3), m, clamped at joint 0, else free.
 
-    `half`: from the frame of the link before, at joint 0 of the wall, to that of the joint, and on to that of the link,
-    (N, 3, 3). `rod` and `nodes`, arc length at the joints, m, are what it divides. In the world are masses, (N,),
-    centres, (N, 3), and inertias about them, (N, 3, 3), of `bodies`; places, axes, (n, 3), and joints of `hinges`.
+    `frames` of links and `axes_at` the joints, of the rod there, (N, 3, 3). `rod` and `nodes`, arc length at the
+    joints, m, are what it divides. In the world are masses, (N,), centres, (N, 3), and inertias about them, (N, 3, 3),
+    of `bodies`; places, axes, (n, 3), and joints of `hinges`.
     """
 
     rod: Rod
     nodes: tuple[float, ...]
-    kind: Links
+    parts: str
     places: Array
     frames: Array
-    half: Array
+    axes_at: Array
     bodies: tuple[Array, Array, Array]
     hinges: tuple[Array, Array, Array]
 
@@ -66,8 +68,9 @@ class CurvedChain(RigidChain):
 
     def rest(self, j: int) -> tuple[Array, Array]:
         """(origin in the frame before, rotations from there to the joint's axes and on to the link, (2, 3, 3))."""
-        turns = np.stack([self.half[j] if j else self.frames[0] @ self.half[0].T, self.half[j]])
-        return (self.places[0] if j == 0 else np.array([self.links[j - 1].length, 0.0, 0.0])), turns
+        axes, before = self.axes_at[j], self.frames[j - 1] if j else np.eye(3)
+        place = np.array([self.links[j - 1].length, 0.0, 0.0]) if j else self.places[0]
+        return place, np.stack([before.T @ axes, axes.T @ self.frames[j]])
 
     def drawn(self, j: int) -> tuple[float, float]:
         """Sides of a link, across and along `u`, m; where unknown a hundredth of the length, and as EI2 to EI."""
@@ -94,83 +97,85 @@ class CurvedChain(RigidChain):
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
-        return converged(self.rod, self.nodes, self.kind, n_modes)[0]
-
-    def rest_angle(self, j: int) -> float:
-        """Rotation between the links at a joint, rad, 0 at the wall."""
-        return (j > 0) * float(4.0 * np.arcsin(min(np.linalg.norm(self.half[j] - np.eye(3)) / 8.0**0.5, 1.0)))
+        return rod_hz(self.rod, self.nodes, n_modes)
 
 
-def curved_chain(rod: Rod, nodes: Array, kind: Links = "chords") -> CurvedChain:
-    """The chain with joints at arc lengths `nodes`, (N + 1,), m, from 0 to the length.
-
-    `kind`: "chords" end on the curve and are short by a^2/24 at an angle a between links; "arcs" have the length of the
-    curve and the directions of its chords. Masses are those of the curve.
-    """
-    n, places, h = len(nodes) - 1, rod.place(nodes), np.diff(nodes)
-    chords = np.diff(places, axis=0)
-    lengths = np.linalg.norm(chords, axis=1)
-    middles, tangents = 0.5 * (nodes[1:] + nodes[:-1]), chords / lengths[:, None]
-    along = np.vstack([rod.tangent, tangents])
-    if np.einsum("ni,ni->n", along[1:], along[:-1]).min() < BACK:
+def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
+    """The chain with joints at arc lengths `nodes`, (N + 1,), m, from 0 to the length. Raises InputError."""
+    n, places, edges = len(nodes) - 1, rod.place(nodes), np.sort(np.append(nodes, 0.5 * (nodes[1:] + nodes[:-1])))
+    chords, sections = np.diff(places, axis=0), rod.frames(edges)
+    lengths, axes = np.linalg.norm(chords, axis=1), sections[:-1:2]
+    ways = chords / lengths[:, None]
+    if np.einsum("ni,ni->n", ways, np.vstack([axes[:1, :, 0], ways[:-1]])).min() < BACK:
         raise InputError("curve: two links point in opposite directions, give more links or points along the turn")
-    every = transported(along, rod.start, rod.at(np.append(0.0, middles))[:, 5])
-    first, frames = every[0], every[1:]
-    if kind == "arcs":
-        lengths = h
-        places = places[0] + np.vstack([np.zeros(3), np.cumsum(h[:, None] * tangents, axis=0)])
-    turns = np.swapaxes(frames[:-1], 1, 2) @ frames[1:]
-    half = np.append((first.T @ frames[0])[None], _half(turns), axis=0)
-    s, weights = rod.quadrature(np.concatenate([nodes, middles]))
-    link, joint, values = np.clip(np.searchsorted(nodes, s) - 1, 0, n - 1), np.searchsorted(middles, s), rod.at(s)
-    soft = np.stack([np.bincount(joint, weights / values[:, i], n + 1) for i in range(3)], axis=1)[:n]
-    wall = "gregory" if np.ptp(h[:3]) < ALIKE * h[0] and not rod.steps(0.0, middles[:3][-1]) else "half"
-    if wall == "gregory":
-        factors = wall_factors(("clamped", "free"), n, wall)[:3]
-        soft[:3, :2] = (factors * h[:3].mean())[:n, None] / rod.at(nodes[:3])[:n, :2]
-    x, heavy = (s - nodes[link]) * (lengths / h)[link], weights * values[:, 3]
-    masses = np.bincount(link, heavy, n)
-    centres = np.bincount(link, heavy * x, n) / masses
-    inertias = np.outer(np.bincount(link, heavy * (x - centres[link]) ** 2, n), [not rod.in_space, 1.0, 1.0])
+    across = np.cross(sections[1::2, :, 2], ways)
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    frames = np.stack([ways, across, np.cross(ways, across)], axis=2)
+    masses, centres, inertias = _bodies(rod, nodes, places, frames)
+    soft, wall = _compliances(rod, edges)
+
+    turning, (ei, mass) = AXES if rod.in_space else AXES[:1], rod.values[0, [0, 3]].tolist()
+    springs, starts = np.append(1.0 / soft, np.zeros((1, 3)), axis=0), np.append(0.0, np.cumsum(lengths)).tolist()
+    beam = Beam(length=starts[-1], supports=("clamped", "free"), bending_stiffness=ei, mass_per_length=mass)
+    joints = tuple(Joint(x, tuple(map(Hinge, turning, k))) for x, k in zip(starts, springs.tolist(), strict=True))
+    rows = zip(starts, lengths.tolist(), masses.tolist(), centres.tolist(), inertias.tolist(), strict=False)
+    links = tuple(Link(x, length, m, at, tuple(own), tuple(off)) for x, length, m, (at, *off), own in rows)
+    about = np.stack([-axes[:, :, 1], axes[:, :, 2], axes[:, :, 0]], axis=1)[:, : len(turning)]
+    order, world = np.repeat(np.arange(n), len(turning)), np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
+    shape: dict[str, Any] = {"parts": _parts(rod, nodes), "nodes": tuple(nodes.tolist()), "places": places}
+    shape |= {"frames": frames, "axes_at": axes, "hinges": (places[order], about.reshape(-1, 3), order)}
+    shape |= {"bodies": (masses, places[:-1] + np.einsum("nij,nj->ni", frames, centres), world)}
+    return CurvedChain(beam, wall, joints, links, in_space=rod.in_space, rod=rod, **shape)
+
+
+def _parts(rod: Rod, nodes: Array) -> str:
+    """What the links are, and the order of their errors."""
+    why = "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
+    why = "order 2 by unequal lengths" if np.ptp(h := np.diff(nodes)) > ALIKE * h[0] else why
+    return f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
+
+
+def _bodies(rod: Rod, nodes: Array, places: Array, frames: Array) -> tuple[Array, Array, Array]:
+    """Masses, (N,), centres from the joints and principal inertias of the pieces in their `frames`, (N, 3)."""
+    s, weights = rod.quadrature(nodes)
+    n, values, link = len(frames), rod.at(s), np.searchsorted(nodes[1:-1], s)
+    heavy, local = weights * values[:, 3], np.einsum("qji,qj->qi", frames[link], rod.place(s) - places[link])
+    masses = np.bincount(link, heavy, n).astype(float)
+    centres = np.stack([np.bincount(link, heavy * x, n) for x in local.T], axis=1) / masses[:, None]
+    spread = np.stack([np.bincount(link, heavy * x**2, n) for x in (local - centres[link]).T], axis=1)
+    inertias = spread.sum(axis=1)[:, None] - spread
+    if not rod.in_space:
+        return masses, centres, np.repeat(inertias[:, 1:2], 3, axis=1)
     both = values[:, :2] / values[:, :2].sum(axis=1)[:, None]  # rho I of a section of one material
-    for i, share in enumerate((1.0, *both.T) if rod.in_space else ()):
-        inertias[:, i] += np.bincount(link, weights * values[:, 4] * share, n)
-    axes = AXES if rod.in_space else AXES[:1]
-    springs = np.append(1.0 / soft, np.zeros((1, 3)), axis=0).tolist()
-    edges = np.append(0.0, np.cumsum(lengths)).tolist()
-    rows = zip(edges, lengths.tolist(), masses.tolist(), centres.tolist(), map(tuple, inertias.tolist()), strict=False)
-    ei, mass = rod.values[0, [0, 3]].tolist()
-    beam = Beam(length=edges[-1], supports=("clamped", "free"), bending_stiffness=ei, mass_per_length=mass)
-    joints = tuple(Joint(x, tuple(map(Hinge, axes, k))) for x, k in zip(edges, springs, strict=True))
-    about = frames @ np.swapaxes(half, 1, 2)
-    each = np.stack([-about[:, :, 1], about[:, :, 2], about[:, :, 0]], axis=1)[:, : len(axes)]
-    order = np.repeat(np.arange(n), len(axes))
-    world = np.einsum("nij,nj,nkj->nik", frames, inertias, frames)
-    shape: dict[str, Any] = {"nodes": tuple(nodes.tolist()), "places": places, "frames": frames, "half": half}
-    shape |= {"hinges": (places[order], each.reshape(-1, 3), order)}
-    shape |= {"bodies": (masses, places[:-1] + centres[:, None] * tangents, world)}
-    links = tuple(Link(*row) for row in rows)
-    return CurvedChain(beam, wall, joints, links, in_space=rod.in_space, rod=rod, kind=kind, **shape)
+    sections = [np.bincount(link, weights * values[:, 4] * share, n) for share in (1.0, *both.T)]
+    return masses, centres, inertias + np.stack(sections, axis=1)
 
 
-def _half(turns: Array) -> Array:
-    """The rotations of half the angle, (n, 3, 3): the polar factor of 1 + R."""
-    left, _, right = np.linalg.svd(np.eye(3) + turns)
-    return np.asarray(left @ right)
+def _compliances(rod: Rod, edges: Array) -> tuple[Array, str]:
+    """(compliances of the joints, (N, 3), rad/N m, rule at the wall), by the `edges` of half links, (2 N + 1,)."""
+    (s, weights), near, parts = rod.quadrature(edges), AT * edges[-1], len(edges) - 1
+    ends = np.where(np.arange(parts) % 2, edges[1:] - near, edges[:-1] + near)  # those at joints
+    half = 0.5 * np.repeat(np.diff(edges[::2]), 2)[:, None] / rod.at(ends)[:, :3]
+    inside, part = np.searchsorted(rod.jumps, [edges[:-1] + near, edges[1:] - near]), np.searchsorted(edges[1:-1], s)
+    integrals = np.stack([np.bincount(part, weights / one, parts) for one in rod.at(s)[:, :3].T], axis=1)
+    half = np.where((inside[0] < inside[1])[:, None], integrals, half)
+    soft, h = np.vstack([half[:1], half[1:-1:2] + half[2::2]]), np.diff(edges[:8:2])
+    if np.ptp(h) > ALIKE * h[0] or ((rod.jumps > near) & (rod.jumps < edges[:6][-1])).any():
+        return soft, "half"
+    factors = wall_factors(("clamped", "free"), len(soft), "gregory")[:-1] / np.append(0.5, np.ones(len(soft) - 1))
+    soft[:, : 2 + rod.bent] *= factors[:, None]
+    return soft, "gregory"
 
 
 @lru_cache(maxsize=16)
-def converged(rod: Rod, nodes: tuple[float, ...], kind: Links, n_modes: int) -> tuple[Array, Array]:
-    """(frequencies of the rod, Hz, observed orders), (n_modes,), by Richardson from links in 1, 2 and 4 parts."""
+def rod_hz(rod: Rod, nodes: tuple[float, ...], n_modes: int) -> Array:
+    """Frequencies of the rod, (n_modes,), Hz, from links in 2 and 4 parts, of long chains in 1 and 2.
+
+    Extrapolated as of order 2: of order 4 the error is 2 % of that of the chain, of long chains 27 %.
+    """
     n, hertz = len(nodes) - 1, list[Array]()
-    parts = (1, 2, 4) if 4 * n * (1 + 2 * rod.in_space) <= MOST else (1, 2)
-    for part in parts:
+    for part in (2, 4) if 4 * n * (1 + 2 * rod.in_space) <= MOST else (1, 2):
         finer = np.interp(np.arange(n * part + 1) / part, np.arange(n + 1), nodes)
-        hertz.append(curved_chain(rod, finer, kind).frequencies_hz(n_modes=n_modes))
-    few = min(map(len, hertz))
-    steps, orders = np.diff([one[:few] for one in hertz], axis=0), np.full(few, np.nan)
-    if len(parts) == 3:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            orders = np.log2(steps[0] / steps[1])
-    used = np.clip(np.nan_to_num(orders, nan=2.0), 1.0, 4.0)  # 2 where an error changes its sign
-    return hertz[-1][:few] + steps[-1] / (2.0**used - 1.0), orders
+        hertz.append(curved_chain(rod, finer).frequencies_hz(n_modes=n_modes))
+    coarse, fine = (one[: len(hertz[0])] for one in hertz)
+    return np.asarray(fine + (fine - coarse) / 3.0)

@@ -1,7 +1,8 @@
 """A chain of a file that is curved at rest, or graded in mass and stiffness: the rod that it means, what deviates.
 
-The joints mean the curve, and EI = k (l + l')/2 of a joint between links l and l', and GJ likewise, each by a
-law along the rod; masses and polar inertias are those of the links. The reference is that rod, clamped and free.
+The joints mean the curve, and EI = k (l + l')/2 of a joint between links l and l', and GJ likewise, each by a law
+along the rod; l are parts of the curve where the links are its pieces, with their centres of mass off the chords, else
+chords. Masses and polar inertias are those of the links. The reference is that rod, clamped and free.
 """
 
 from dataclasses import replace as with_fields
@@ -15,10 +16,11 @@ from verify.arrays import Array
 from verify.engines.curved import CurvedChain, curved_chain
 from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
-from verify.engines.rod import Rod, transported
+from verify.engines.rod import VALUES, Rod, spline
 from verify.engines.rules import ADAPTED, SERIES, Judged, at_wall, half_links, written
-from verify.engines.stiffness_law import ALIKE, ROUGH, Law
+from verify.engines.stiffness_law import ALIKE, Law
 from verify.errors import InputError, shown
+from verify.formatting import with_unit
 from verify.settings import WALLS, wall_label
 
 UNEVEN = 0.01
@@ -49,6 +51,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
 
     Without a scene no joint but those at the wall has another correct stiffness, and none where one is off the law.
     """
+    lines, chords = _lengths(lines)
     bending, plane = [line for line in lines if line.axis != "torsion"], len(lines) == 1
     _, ways, (masses, *_), hinges, _ = lines[0].curve
     lengths, lean = lines[0].links[:, 0], max(abs(ways @ hinges[0]).max(), 1.0 - abs(hinges @ hinges[0]).min())
@@ -71,50 +74,61 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
             laws, rules = [*laws, law], [*rules, rule]
     except InputError as error:
         raise InputError(f"{name}: {str(error).partition(':')[0]}: correct them") from None
-    tangents = np.vstack([ways[:1], ways[1:] + ways[:-1]])
-    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
-    rod = _rod(lines, laws, plane, tangents)
+    rod = _rod(lines, laws, plane)
     meant = curved_chain(rod, np.unique(rod.s))
-    odd, first = [j for law in laws for j in law.odd], 3 if meant.wall == "gregory" else 1
-    judged, correct = list[Judged](), list[Array]()
+    odd, judged, correct = [j for law in laws for j in law.odd], list[Judged](), list[Array]()
     for line, law, values, rule in zip(lines, laws, means, rules, strict=True):
-        k, twists = line.springs, line.turns == "torsion"
+        wall = "half" if line.turns == "torsion" and not rod.bent else meant.wall
         best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
-        right = abs(k[0] / best[0] - 1.0) < 0.5 * ROUGH if twists else rule in (wall_label(meant.wall), SERIES, ADAPTED)
-        text = f"{2.0 * k[0] / best[0]:.4g} GJ/l at the wall" if twists and not held else rule
-        springs = np.where((np.arange(len(k)) < (1 if twists else first)) & (not (held or odd or right)), best, k)
-        wrong = [text] * (not right)
+        fits, first = rule in (wall_label(wall), SERIES, ADAPTED), np.arange(len(best)) < len(WALLS[wall].weights)
+        springs = np.where(first & (not (held or odd or fits)), best, line.springs)
+        wrong = [rule] * (not fits)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
         names, ends = [line.joints[j] for j in law.odd], " to ".join(f"{x:.6g}" for x in law.joints[[0, -1]])
-        level = float(law.joints[0])
-        law_text = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(level)
-        judged.append(Judged(line, meant, meant, text, level, springs, wrong, [], [], names, law_text))
+        text, level = f"{law.kind}, {ends} N m2" if np.ptp(law.joints) else written(law.joints[0]), float(law.joints[0])
+        judged.append(Judged(line, meant, meant, rule, level, springs, wrong, [], [], names, text))
         correct.append(springs)
     present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
     faults = list(dict.fromkeys(text for one in judged for text in one.faults))
-    tilt = max(float(abs(np.einsum("ni,ni->n", one.curve.hinges, tangents)[1:]).max()) for one in bending)
+    tilt = max(float(abs(np.einsum("ni,ni->n", one.curve.hinges, meant.axes_at[:, :, 0])[1:]).max()) for one in bending)
     levels = [law.joints[0] for law in laws]
     if not plane and tilt > TILT and (len(lines) < len(AXES) or np.ptp(levels) > ALIKE * levels[0]):
         angle = f"{np.degrees(tilt):.2g} degrees"
-        faults.append(f"hinges across are up to {angle} off the axes half way between links: EI and GJ mix, order 1")
+        faults.append(f"hinges across are up to {angle} off the axes of the rod: EI and GJ mix, order 1")
+    if chords and rod.bent:
+        off = with_unit(float(np.hypot(*np.transpose([link.off for link in meant.links])).max()), "m")
+        text = f"shift centres of mass off the chords by up to {off}, to those of the curve between joints"
+        judged = [one._replace(remedy=text) for one in judged]
     return [one._replace(present=present, correct=right, faults=faults) for one in judged]
 
 
-def _rod(lines: list[Line], laws: list[Law], plane: bool, tangents: Array) -> Rod:
+def _lengths(lines: list[Line]) -> tuple[list[Line], bool]:
+    """The lines with the lengths of the curve where links are its pieces; whether they are its chords."""
+    places, ways, (_, centres, _), *_ = lines[0].curve
+    arcs, chords, arms = np.diff(spline(places)[0]), lines[0].links[:, 0], centres - places[:-1]
+    off = np.linalg.norm(np.cross(arms, ways), axis=1).max()
+    if off < 0.5 * max((arcs * (arcs - chords)).max() / 6.0, 0.0) ** 0.5:  # the centre of an arc is twice as far off
+        return lines, True
+    return [line._replace(links=np.column_stack([arcs, line.links[:, 1:]])) for line in lines], False
+
+
+def _rod(lines: list[Line], laws: list[Law], plane: bool) -> Rod:
     """The rod of links: values at both ends of each, by the laws of the joints; in a plane `u` is in it."""
-    places, ways, (_, _, inertias), *_ = lines[0].curve
+    places, ways, (_, _, inertias), hinges, _ = lines[0].curve
     lengths, masses = lines[0].links.T[:2]
     spins = np.ones(len(ways)) if plane else np.einsum("ni,nij,nj->n", ways, inertias, ways) / lengths
     ei, *others = [_ends(law.links if law.kind != "smooth" else None, law.joints) for law in laws]
     ei2 = others[0] if others else ei
     about = {line.axis: value for line, value in zip(lines, [ei, *others], strict=True)}
     gj = about.get("torsion", RIGID * np.maximum(ei, ei2))
-    start, u = np.cross(lines[0].curve.hinges[0], ways[0]), np.cross(lines[0].curve.hinges, tangents)
-    frames = transported(tangents, start, np.zeros(len(u)))
-    turned = (np.einsum("ni,nij->nj", u, frames)[:, 1:] * [-1.0, 1.0]).T  # along -y and u
-    roll = 0.5 * np.unwrap(2.0 * np.arctan2(*turned)) if not plane else np.zeros(len(u))
-    values = [ei, ei2, gj, _even(masses / lengths), _even(spins), _ends(None, roll), *np.zeros((2, 2 * len(u)))]
-    return Rod(np.repeat(places, 2, axis=0)[1:-1], np.stack(values, axis=1), not plane, start)
+    values = [ei, ei2, gj, _even(masses / lengths), _even(spins), *np.zeros((3, len(ei)))]
+    rod = Rod(np.repeat(places, 2, axis=0)[1:-1], np.stack(values, axis=1), not plane, np.cross(hinges[0], ways[0]))
+    if not plane:
+        frames = rod.frames(np.unique(rod.s))[:-1]
+        turned = np.einsum("ni,nij->nj", np.cross(hinges, frames[:, :, 0]), frames)
+        roll = 0.5 * np.unwrap(2.0 * np.arctan2(-turned[:, 1], turned[:, 2]))
+        rod.values[:, VALUES.index("roll")] = _ends(None, roll)
+    return rod
 
 
 def _ends(links: Array | None, joints: Array) -> Array:
@@ -140,12 +154,11 @@ def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain) -> Curve
     curve, rows, hinges = lines[0].curve, list[tuple[Hinge, ...]](), list[tuple[int, Array]]()
     for j in range(meant.count):
         found = [(one, float(k[j])) for one, k in zip(lines, springs, strict=True) if not np.isnan(k[j])]
-        each = [(one.axis, k, float(one.dashpots[j]), float(one.armatures[j])) for one, k in found]
-        rows.append(tuple(Hinge(*values) for values in each))
+        rows.append(tuple(Hinge(one.axis, k, float(one.dashpots[j]), float(one.armatures[j])) for one, k in found))
         hinges += [(j, one.curve.hinges[j]) for one, _ in found]
-    first, edges = np.array([j for j, _ in hinges]), np.append(0.0, np.cumsum(lines[0].links[:, 0])).tolist()
-    joints = tuple(map(Joint, edges, [*rows, meant.joints[-1].hinges]))
-    beam = replace(meant.beam, length=edges[-1], mass_per_length=float(lines[0].links[:, 1].sum()) / edges[-1])
+    first, length = np.array([j for j, _ in hinges]), float(lines[0].links[:, 0].sum())
+    joints = tuple(Joint(old.position, each) for old, each in zip(meant.joints, [*rows, ()], strict=True))
+    beam = replace(meant.beam, length=length, mass_per_length=float(curve.bodies[0].sum()) / length)
     about = curve.places[first], np.array([one for _, one in hinges]), first
     return with_fields(meant, beam=beam, joints=joints, bodies=curve.bodies, hinges=about)
 

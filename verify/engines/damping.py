@@ -85,10 +85,12 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     if request.compensated and not (steps and isfinite(steps.step)):
         raise InputError("damping: it is compensated for a time step, give step and engine")
     first, fits, factor, remarks = 0.0, dict[Axis, Rayleigh](), dict[Axis, float](), list(chain.remarks)
-    run = simulated_chain(chain, 1.0, TRAPEZOIDAL, "bending")
-    shapes = run.modal[2][:, run.rigid :]  # of unit modal mass
-    sizes = np.sum(shapes * (replace(chain, viscosity=1.0).drag() @ shapes), axis=0)
-    for axis in chain.axes:
+    sizes = np.ones(1)
+    if drag:
+        run = simulated_chain(chain, 1.0, TRAPEZOIDAL, "bending")
+        shapes = run.modal[2][:, run.rigid :]  # of unit modal mass
+        sizes = np.sum(shapes * (replace(chain, viscosity=1.0).drag() @ shapes), axis=0)
+    for axis in chain.motions:
         every = 2.0 * pi * chain.frequencies_hz(axis, None if request.in_hz else int(max(request.at)))
         if not request.in_hz and len(every) < max(request.at):
             raise InputError(f"damping at mode {max(request.at):g}: the chain has {len(every)} modes in {axis}")
@@ -96,11 +98,13 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
         if len(omega) > len(request.ratios):
             fit = band(omega[0], omega[1], ratio, drag=drag, within=request.within)
         else:
-            shares = np.array([1.0 if request.in_hz else sizes[int(hz) - 1] / sizes[0] for hz in request.at])
-            fit = rayleigh(omega, request.ratios, drag=shares * drag, within=request.within)
-        fits[axis], times[axis] = fit, fit.dashpots
+            by_mode = drag and not request.in_hz
+            shares = np.array([sizes[int(hz) - 1] / sizes[0] if by_mode else float(drag) for hz in request.at])
+            fit = rayleigh(omega, request.ratios, drag=shares, within=request.within)
+        hinges = chain.axes if axis == "coupled" else (axis,)
+        fits[axis], times = fit, times | dict.fromkeys(hinges, fit.dashpots)
         if request.compensated and steps and scheme:
-            factor[axis] = compensated(scheme, ratio, omega[0], steps.step) / ratio
+            factor |= dict.fromkeys(hinges, compensated(scheme, ratio, omega[0], steps.step) / ratio)
         first = first or 0.5 * float(fit.dashpots * every[0] + fit.drag / every[0])
     if len(request.at) > 1:
         worst = round(max(float(abs(fit.deviation).max()) for fit in fits.values()), 9)  # rounding
@@ -111,4 +115,4 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
         text = f"dashpots compensated: the asked decay at mode {request.at[0]:g}, at this step alone"
         made = with_dashpots(chain, {axis: factor[axis] * time for axis, time in times.items()}, chain.damping)
         return replace(made, remarks=(*remarks, text), meant=chain)
-    return replace(chain, viscosity=float(fits["bending"].drag / sizes[0]))
+    return replace(chain, viscosity=float(fits[chain.motions[0]].drag / sizes[0]))

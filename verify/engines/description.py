@@ -73,13 +73,17 @@ class Joint(msgspec.Struct, frozen=True):
 
 
 class Link(msgspec.Struct, frozen=True):
-    """A rigid link with its bodies from x = `start`, m: centre of mass from there, inertia about it, kg m^2."""
+    """A rigid link with its bodies from x = `start`, m: centre of mass from there, inertia about it, kg m^2.
+
+    `off`: y and z of the centre of mass of a piece of a curve, m.
+    """
 
     start: float
     length: float
     mass: float
     centre: float
     inertia: tuple[float, float, float]
+    off: tuple[float, float] = (0.0, 0.0)
 
 
 class Spring(msgspec.Struct, frozen=True):
@@ -115,7 +119,7 @@ class RigidChain:
     steps: Steps | None = None
     remarks: tuple[str, ...] = ()
     meant: "RigidChain | None" = None
-    straight, along, reference = True, "the beam", "the exact beam"
+    straight, parts, along, reference = True, "links", "the beam", "the exact beam"
     __repr__ = one_line(count="links", wall="", theory="", damping="")
 
     @property
@@ -142,14 +146,14 @@ class RigidChain:
         return width, thick
 
     def rest_angle(self, j: int) -> float:
-        """Rotation between the links at a joint, rad."""
-        return 0.0
+        """Rotation between the links at a joint, rad, 0 at the wall."""
+        first, last = self.rest(j)[1]
+        return (j > 0) * float(2.0 * np.arcsin(min(np.linalg.norm(first @ last - np.eye(3)) / 8.0**0.5, 1.0)))
 
     def rest(self, j: int) -> tuple[Array, Array]:
         """(place of joint j in the link before, m, rotations from there to its axes and on to its link) at rest."""
-        return np.array([self.links[j - 1].length if j else self.joints[0].position, 0.0, 0.0]), np.stack(
-            [np.eye(3)] * 2
-        )
+        x = self.links[j - 1].length if j else self.joints[0].position
+        return np.array([x, 0.0, 0.0]), np.stack([np.eye(3)] * 2)
 
     @property
     def supported(self) -> tuple[bool, bool]:

@@ -189,7 +189,7 @@ def _cause(one: Judged) -> str:
     if one.odd:
         text = " or give a scene that has it" * (not one.line.curve.bent)
         return f"set joint {', '.join(one.odd[:MANY])}{text}"
-    return "give more links"
+    return one.remedy
 
 
 def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: list[Line]) -> list[str]:

@@ -110,14 +110,16 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         raise InputError(f"{name}: give two links or more, on a curve three")
     ways, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)
     if curved:
-        steps, tip = np.diff(places, axis=0), centres[-1:] - places[-1]
-        ways = np.vstack([steps, tip if tip.any() else steps[-1:]])
+        steps, tips = np.diff(places, axis=0), (centres - places)[-2:]
+        ways = np.vstack([steps, tips[-1:] if tips[-1].any() else steps[-1:]])
         ways, steps = ways / np.linalg.norm(ways, axis=1)[:, None], np.linalg.norm(steps, axis=1)
+        # the centre of mass of a piece of a curve is off its chord, of the last one as of the one before
+        ways[-1] += np.cross(np.cross(tips[0], ways[-2]) / (np.linalg.norm(tips[0]) or 1.0), ways[-1])
+        ways[-1] /= np.linalg.norm(ways[-1])
     centre = np.einsum("ni,ni->n", centres - places, ways)
     if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
-        raise InputError(
-            f"{name}: centres of mass are off the lines between its joints, give links from joint to joint"
-        )
+        text = "centres of mass are off the lines between its joints, give links from joint to joint, or more of them"
+        raise InputError(f"{name}: {text}")
     share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
     last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
     heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
@@ -191,7 +193,8 @@ def _direction(about: Array) -> str:
 
 def _deep(mains: list[Solid], ways: Array, about: Array, solid: bool) -> tuple[float, float]:
     """(b/a)^2 of a section of depth b across the hinges and a along them, by what is drawn and by inertias, or NaN."""
-    rows = list(zip(mains, ways, about, np.cross(ways, about), strict=True))
+    across = np.cross(ways, about)
+    rows = list(zip(mains, ways, np.cross(across, ways), across, strict=True))
     drawn = [(d @ one.shape @ d, a @ one.shape @ a) for one, _, a, d in rows if one.shape.any()]
     spins = [[d @ one.inertia @ d for d in each] for one, *each in rows]
     inert = [(x + a - d, x + d - a) for x, a, d in spins] if solid else []

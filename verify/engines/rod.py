@@ -1,9 +1,9 @@
 """A rod along a curve in a plane or in space: its stiffnesses, mass and section frame, from a table of points.
 
-The curve is a cubic spline through the points, by its arc length. Values are linear between points; a point that is
-given twice is a step. `u` is the direction in which bending with EI deflects, `u` x tangent that of EI2. At the start
-`u` lies in the plane of a table of x and y, else it is the normal nearest to z (x where the curve starts along z); from
-there it is transported without rotation about the tangent, and turned about it by `roll`.
+The curve is a cubic spline through the points, by its arc length. Columns are linear between points, and EI by columns
+of sizes; a point that is given twice is a step. `u` is the direction in which bending with EI deflects, `u` x tangent
+that of EI2. At the start `u` lies in the plane of a table of x and y, else it is the normal nearest to z (x where the
+curve starts along z); from there it is transported without rotation about the tangent, and turned about it by `roll`.
 """
 
 import csv
@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import sin
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +36,8 @@ LARGEST = 10_000_000
 """Bytes of a table, as of a scene with long lists."""
 GAUSS = np.polynomial.legendre.leggauss(8)
 """Points and weights between two changes of a value: 1/EI to 1e-9 where EI changes 10 times, moments to rounding."""
+STRAIGHT = 1e-6
+"""Length less the distance of the ends over the length up to which a curve is straight: a bow of 6e-4."""
 ALONG_Z = 0.99
 """Cosine to z from which the first section is placed by x: 8 degrees."""
 
@@ -50,32 +51,22 @@ class Rod:
     in_space: bool
     start: Array
     """`u` at the start but for its part along the tangent, (3,)."""
+    powers: tuple[float, ...] = (1.0,) * len(VALUES)
+    """Of values by the sizes that are linear between points."""
 
     @cached_property
     def _spline(self) -> tuple[Array, Callable[..., Array]]:
-        """(arc length at the points, (P,), place by arc length)."""
-        from scipy.interpolate import CubicSpline
-
-        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        apart = np.append(True, steps > 1e-9 * steps.sum())
-        places, x, w = self.points[apart], *GAUSS
-        knots = np.append(0.0, np.cumsum(steps[apart[1:]]))
-        for _ in range(4):  # the spline by its own length: its speed differs from 1 by the error of the spline
-            curve, h = CubicSpline(knots, places), np.diff(knots)
-            at = knots[:-1, None] + 0.5 * h[:, None] * (1.0 + x)
-            knots = np.append(0.0, np.cumsum(0.5 * h * (np.linalg.norm(curve(at, 1), axis=2) @ w)))
-        return knots[np.cumsum(apart) - 1], CubicSpline(knots, places)
+        return spline(self.points)
 
     @property
     def s(self) -> Array:
         """Arc length at the points, m, (P,)."""
         return self._spline[0]
 
-    @property
-    def tangent(self) -> Array:
-        """At the start, (3,)."""
-        t = self._spline[1](np.zeros(1), 1)[0]
-        return np.asarray(t / np.linalg.norm(t))
+    @cached_property
+    def bent(self) -> bool:
+        """Whether the curve is no straight line."""
+        return bool(np.linalg.norm(self.points[-1] - self.points[0]) < (1.0 - STRAIGHT) * self.s[-1])
 
     def place(self, s: Array) -> Array:
         """Points at arc lengths, m, (n, 3)."""
@@ -83,19 +74,55 @@ class Rod:
 
     def at(self, s: Array) -> Array:
         """`values` at arc lengths, (n, 8)."""
-        return np.stack([np.interp(s, self.s, one) for one in self.values.T], axis=1)
+        each = zip(self.values.T, self.powers, strict=True)
+        return np.stack([np.interp(s, self.s, one ** (1.0 / p)) ** p for one, p in each], axis=1)
 
-    def steps(self, begin: float, end: float) -> bool:
-        """Whether EI jumps between two arc lengths, m."""
+    def frames(self, s: Array) -> Array:
+        """Frames (tangent, `u` x tangent, `u`) at ascending arc lengths from 0, (n, 3, 3).
+
+        `u` is carried along without rotation about the tangent by double reflection, order 4 (Wang et al., ACM
+        Transactions on Graphics 27, 2008), and turned by the roll.
+        """
+        places, tangents, roll = self.place(s), self._spline[1](s, 1), self.at(s)[:, 5, None]
+        tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+        u = self.start - (self.start @ tangents[0]) * tangents[0]
+        every = [u / np.linalg.norm(u)]
+        for t, chord, ahead in zip(tangents, np.diff(places, axis=0), tangents[1:], strict=False):
+            both, share = np.array([every[-1], t]), 2.0 / (chord @ chord)
+            u, back = both - share * np.outer(both @ chord, chord)
+            over = ahead - back
+            u = u - 2.0 * (u @ over) / (over @ over) * over
+            every.append(u - (u @ ahead) * ahead)
+        along = np.array(every) / np.linalg.norm(every, axis=1)[:, None]
+        along = np.cos(roll) * along + np.sin(roll) * np.cross(tangents, along)
+        return np.stack([tangents, np.cross(along, tangents), along], axis=2)
+
+    @cached_property
+    def jumps(self) -> Array:
+        """Arc lengths at which EI, EI2 or GJ jumps, m."""
         at = np.flatnonzero(np.diff(self.s) == 0.0)
-        jumps = (self.values[at, :2] != self.values[at + 1, :2]).any(axis=1)
-        return bool((jumps & (self.s[at] > begin) & (self.s[at] < end)).any())
+        return np.asarray(self.s[at[(self.values[at, :3] != self.values[at + 1, :3]).any(axis=1)]])
 
     def quadrature(self, cuts: Array) -> tuple[Array, Array]:
         """Points and weights between all points of the table and `cuts`, (n,), m."""
         edges = np.unique(np.concatenate([self.s, cuts]))
         half = 0.5 * np.diff(edges)[:, None]
         return (edges[:-1, None] + half * (1.0 + GAUSS[0])).ravel(), (half * GAUSS[1]).ravel()
+
+
+def spline(points: Array) -> tuple[Array, Callable[..., Array]]:
+    """(arc length at points, (P,), m, place by arc length) of the curve through points, (P, 3), some twice."""
+    from scipy.interpolate import CubicSpline
+
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    apart = np.append(True, steps > 1e-9 * steps.sum())
+    places, x, w = points[apart], *GAUSS
+    knots = np.append(0.0, np.cumsum(steps[apart[1:]]))
+    for _ in range(4):  # the spline by its own length: its speed differs from 1 by the error of the spline
+        curve, h = CubicSpline(knots, places), np.diff(knots)
+        at = knots[:-1, None] + 0.5 * h[:, None] * (1.0 + x)
+        knots = np.append(0.0, np.cumsum(0.5 * h * (np.linalg.norm(curve(at, 1), axis=2) @ w)))
+    return knots[np.cumsum(apart) - 1], CubicSpline(knots, places)
 
 
 def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_space: bool = False) -> Rod:
@@ -141,7 +168,12 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
         raise InputError(f"{path.name}: its points are one place, give a curve")
     tangent = first[0] / np.linalg.norm(first[0])
     start = np.array([-tangent[1], tangent[0], 0.0]) if "z" not in table else np.eye(3)[2]
-    return Rod(points, values, space, np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start)
+    # EI = E b h^3/12 and rho A by two sizes, of a round section both; GJ of a flat one, the polar inertia as EI2
+    b, h = (int(not {name, "diameter"}.isdisjoint(table)) for name in ("width", "thickness"))
+    each = zip(VALUES, (b + 3 * h, 3 * b + h, b + 3 * h, b + h, 3 * b + h, 1, 1, 1), strict=True)
+    powers = tuple(1.0 if name in table else max(power, 1.0) for name, power in each)
+    start = np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start
+    return Rod(points, values, space, start, powers)
 
 
 @lru_cache(maxsize=4096)
@@ -171,19 +203,3 @@ def _values(
     thick = made.get("diameter", 0.0)
     drawn = made.get("width", thick), made.get("thickness", thick)
     return [*(made.get(key, 1.0) for key in VALUES[:5]), np.radians(made.get("roll", 0.0)), *drawn]
-
-
-def transported(tangents: Array, start: Array, roll: Array) -> Array:
-    """Frames (tangent, `u` x tangent, `u`), (n, 3, 3): the least rotation from tangent to tangent, then `roll`."""
-    u, frames = start - (start @ tangents[0]) * tangents[0], list[Array]()
-    for i, t in enumerate(tangents):
-        if i:
-            before = tangents[i - 1]
-            w = np.cross(before, t)
-            u = u + np.cross(w, u) + np.cross(w, np.cross(w, u)) / (1.0 + before @ t)
-        u = u - (u @ t) * t
-        u = u / np.linalg.norm(u)
-        c, s = np.cos(roll[i]), sin(roll[i])
-        turned = c * u + s * np.cross(t, u)
-        frames.append(np.stack([t, np.cross(turned, t), turned], axis=1))
-    return np.array(frames)

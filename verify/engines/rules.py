@@ -5,7 +5,7 @@ is the one by which all its joints have the same EI. Without a beam next to it, 
 """
 
 import itertools
-from math import pi
+from math import isnan, pi
 from typing import Any, NamedTuple
 
 import msgspec
@@ -40,7 +40,7 @@ class Judged(NamedTuple):
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
     of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
-    `means`: EI or GJ in words.
+    `means`: EI or GJ in words. `remedy`: what is better than more links.
     """
 
     line: Line
@@ -54,6 +54,7 @@ class Judged(NamedTuple):
     advice: list[str]
     odd: list[str]
     means: str
+    remedy: str = "give more links"
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -125,7 +126,8 @@ def _on_spring(line: Line, beam: Beam, theory: Any) -> Judged:
 def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayleigh") -> RigidChain:
     """A line with springs, (N,), N m/rad, as a chain about `line.turns`."""
     edges = np.append(0.0, np.cumsum(line.links[:, 0])).tolist()
-    hinges = [() if np.isnan(one) else (Hinge(line.turns, float(one)),) for one in [*springs, 0.0]]
+    each = np.pad([springs, line.dashpots, line.armatures], ((0, 0), (0, 1))).T.tolist()
+    hinges = [() if isnan(k) else (Hinge(line.turns, k, dashpot, armature),) for k, dashpot, armature in each]
     rows = zip(edges, line.links.tolist(), strict=False)
     links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)

@@ -75,15 +75,13 @@ def setting_of(setting: Setting, engine: str, step: float | None) -> Setting:
 def _motion(line: Line | RigidChain, exact: Array, beam: Beam, setting: Setting) -> Motion:
     """The matrices of a line, or of a chain of all its axes, in the steps of a setting."""
     if isinstance(line, RigidChain):
-        run = simulated_chain(line, setting.step, scheme_of(*setting[:2]))
-        bare = replace(run, mass=line.matrices()[0])
-        return Motion(line.motions[0], exact, bare if (bare.mass != run.mass).any() else run, run)
-    chain = replace(rigid(line, line.springs, beam, ""), viscosity=setting.viscosity)
-    mass, stiffness = chain.matrices(line.turns)
-    damping, armature = (np.diag(one[~np.isnan(line.springs)]) for one in (line.dashpots, line.armatures))
-    damping = damping + chain.drag(line.turns)
-    file = Simulated(mass, damping, stiffness, setting.step, scheme_of(*setting[:2]))
-    return Motion(line.axis, exact, file, replace(file, mass=mass + armature) if armature.any() else file)
+        chain, axis, about = line, line.motions[0], line.motions[0]
+    else:
+        chain = replace(rigid(line, line.springs, beam, ""), viscosity=setting.viscosity)
+        axis, about = line.axis, line.turns
+    run = simulated_chain(chain, setting.step, scheme_of(*setting[:2]), about)
+    bare = replace(run, mass=chain.matrices(about)[0])
+    return Motion(axis, exact, bare if (bare.mass != run.mass).any() else run, run)
 
 
 def judge_runs(

@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.engines.description import AXES, Axis
 from verify.engines.line import Line
+from verify.engines.rules import half_links
 from verify.problem.beam import Beam, in_plane
 
 APART = log(1.2)
@@ -18,8 +19,7 @@ APART = log(1.2)
 
 def inner_stiffness(line: Line) -> float:
     """EI of the inner joints, N m^2."""
-    steps = line.links[:, 0]
-    return float(np.median(0.5 * (steps[1:] + steps[:-1]) * line.springs[1:]))
+    return float(np.median((line.springs * half_links(line.links[:, 0]))[1:]))
 
 
 def planes(found: list[Line], beam: Beam | None) -> list[Axis]:

@@ -28,13 +28,13 @@ _MJCF_JOINT = (
     '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"{more}/>'
 )
 _MJCF_BODY = (
-    '\n<inertial pos="{centre!r} 0 0" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
+    '\n<inertial pos="{centre}" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
     '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
 )
 _SDF = (
     '<sdf version="1.6"><model name="beam">\n',
     '<link name="{body}"><pose>{pose}</pose><inertial>'
-    "<pose>{centre!r} 0 0 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
+    "<pose>{centre} 0 0 0</pose><mass>{mass!r}</mass><inertia><ixx>{inertia[0]!r}</ixx>"
     "<iyy>{inertia[1]!r}</iyy><izz>{inertia[2]!r}</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>"
     '<visual name="{body}"><pose>{middle!r} 0 0 0 0 0</pose><geometry><box><size>{size}</size></box></geometry>'
     "<material><diffuse>{colour}</diffuse></material></visual></link>\n"
@@ -46,7 +46,7 @@ _SDF = (
 )
 _URDF = (
     '<robot name="beam">\n<link name="world"/>\n',
-    '<link name="{body}"><inertial><origin xyz="{centre!r} 0 0"/><mass value="{mass!r}"/>'
+    '<link name="{body}"><inertial><origin xyz="{centre}"/><mass value="{mass!r}"/>'
     '<inertia ixx="{inertia[0]!r}" iyy="{inertia[1]!r}" izz="{inertia[2]!r}" ixy="0" ixz="0" iyz="0"/></inertial>'
     '<visual><origin xyz="{middle!r} 0 0"/><geometry><box size="{size}"/></geometry>'
     '<material name="{body}"><color rgba="{colour}"/></material></visual></link>\n'
@@ -93,7 +93,7 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
                 **{"turned": "" if still else f' rpy="{numbers(roll_pitch_yaw(turn))}"', "turn": turn},
                 **{"pose": f"{numbers(place)} {numbers(roll_pitch_yaw(frame))}", "offset": numbers(offset)},
                 **{"stiffness": stiffness, "damping": damping, "armature": armature, "last": last},
-                **{"mass": mass, "centre": link.centre * last, "length": link.length},
+                **{"mass": mass, "centre": numbers(np.array([link.centre, *link.off]) * last), "length": link.length},
                 **{"inertia": tuple(share * one for one in link.inertia)},
                 **{"middle": 0.5 * link.length, "size": size, "half": half},
                 **{"colour": COLOURS[j % 2]},
@@ -110,13 +110,6 @@ def roll_pitch_yaw(turn: Array) -> Array:
     """Angles, rad, (3,), about x, then y, then z at rest, of a rotation."""
     pitch = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
     return np.array([np.arctan2(turn[2, 1], turn[2, 2]), pitch, np.arctan2(turn[1, 0], turn[0, 0])])
-
-
-def quaternion(turn: Array) -> Array:
-    """Quaternion of a rotation, (4,), its scalar first."""
-    (cx, cy, cz), (sx, sy, sz) = (f(0.5 * roll_pitch_yaw(turn)) for f in (np.cos, np.sin))
-    one, other = (cx * cy * cz, sx * cy * cz, cx * sy * cz, cx * cy * sz), (sx * sy, -cx * sy, sx * cy, -sx * sy)
-    return np.array([a + b * c for a, b, c in zip(one, other, (sz, sz, sz, cz), strict=True)])
 
 
 def notes(chain: RigidChain) -> str:
@@ -155,11 +148,15 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     if chain.steps and chain.steps.engine == "MuJoCo":
         rule = chain.steps.integrator
     rule, _, flag = rule.partition(" without ")
+    from scipy.spatial.transform import Rotation
+
     options = f' viscosity="{chain.viscosity!r}"' if chain.viscosity else ""
     flags = f'<flag {flag}="disable"/>' if flag else ""
     bodies, begun = "", False
     for one in tree(chain):
-        turned = f' quat="{numbers(quaternion(one["turn"]))}"' if one["turned"] else ""
+        turned = (
+            f' quat="{numbers(Rotation.from_matrix(one["turn"]).as_quat(scalar_first=True))}"' if one["turned"] else ""
+        )
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]}"{turned}>'
         more = f' armature="{one["armature"]!r}"' if one["armature"] else ""
         kind = "hinge" if one["kind"] == "revolute" else "slide"
@@ -203,15 +200,16 @@ def robot(chain: RigidChain, text: tuple[str, str, str]) -> str:
 def script(chain: RigidChain, engine: str) -> str:
     """A Python script with `build` and `frequencies_hz` of Exudyn or Pinocchio: data, then a fixed text."""
     moves, rows, springs, poses, before = list(tree(chain, in_parts=True)), "", "", "", np.eye(3)
-    names = "stiffness", "damping", "mass", "centre", "inertia"
     for i, one in enumerate(moves):
         kind = one["kind"].capitalize() + "XYZ"[[value != "0" for value in one["axis"].split()].index(True)]
         (offset, (turn, after)), first = chain.rest(one["link"]), not i or moves[i - 1]["link"] != one["link"]
-        values = [float(offset[0] * first), *(one[key] for key in names)]
-        rows += f"    {(one['name'], kind, *values)!r},\n"
+        at = chain.links[one["link"]].centre * one["last"]
+        values = [one["stiffness"], one["damping"], one["mass"], at, one["inertia"]]
+        rows += f"    {(one['name'], kind, float(offset[0] * first), *values)!r},\n"
         if not chain.straight:
             place, turned = (before @ offset, before @ turn) if first else (np.zeros(3), np.eye(3))
-            centre, inertia = after @ [one["centre"], 0.0, 0.0], after @ np.diag(one["inertia"]) @ after.T
+            centre = after @ np.array(one["centre"].split(), dtype=float)
+            inertia = after @ np.diag(one["inertia"]) @ after.T
             poses += f"    {i}: {tuple(each.tolist() for each in (place, turned, centre, inertia))!r},\n"
             before = after
     bodies = {one["link"]: i for i, one in enumerate(moves)}
@@ -249,6 +247,8 @@ def table(chain: RigidChain) -> Table:
         columns += [Column("armature" + word.format(axis), "kg m2", ".4g")] * heavy
     columns += [Column("rest angle", "deg", ".5g")] * (not chain.straight)
     columns += [Column("length", "m"), Column("mass", "kg"), Column("centre", "m")]
+    across = (not chain.straight) * ["y", "z"][not chain.in_space :]
+    columns += [Column(f"centre {one}", "m") for one in across]
     columns += [Column("inertia" + word.format(one), "kg m2") for one in ("xx", "yy", "zz")[: 3 if word else 1]]
     rows = list[list[Any]]()
     for j, joint in enumerate(chain.joints):
@@ -257,7 +257,8 @@ def table(chain: RigidChain) -> Table:
             rows[j] += [getattr(hinge, field) if hinge else None for field in fields]
         rows[j] += [] if chain.straight else [np.degrees(chain.rest_angle(j)) if j < chain.count else None]
         link = chain.links[j] if j < chain.count else None
-        rows[j] += [link.length, link.mass, link.centre, *link.inertia] if link else [None] * 6
+        values = [link.length, link.mass, link.centre, *link.off[2 - len(across) :], *link.inertia] if link else []
+        rows[j] += [*values, *[None] * 8]
         del rows[j][len(columns) :]
     return Table("Joints, and the link beyond each", columns, rows)
 
