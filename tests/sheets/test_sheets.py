@@ -87,7 +87,12 @@ def test_an_exact_record_passes_in_every_figure(tmp_path):
 
 @pytest.mark.parametrize(
     ("header", "times", "values"),
-    [("time [ms],deflection [mm]", 1e3, 1e3), ("Time (s), Deflection (m)", 1.0, 1.0), ("", 1.0, 1.0)],
+    [
+        ("time [ms],deflection [mm]", 1e3, 1e3),
+        ("t_ms,deflection_mm", 1e3, 1e3),
+        ("Time (s), Deflection (m)", 1.0, 1.0),
+        ("", 1.0, 1.0),
+    ],
 )
 def test_units_and_headers_of_a_record_do_not_matter(tmp_path, header, times, values):
     hertz = exact.cantilever_hz(**STEEL)
@@ -106,6 +111,59 @@ def test_modes_that_a_record_does_not_have_are_not_read_and_the_others_are(tmp_p
     assert found["f1"]["passed"]
     assert "none is mode 3" in found["f3"]["lost"]
     assert not found["f3"]["passed"]
+
+
+def test_a_factor_of_all_frequencies_is_one_of_stiffness_over_mass(tmp_path):
+    """A density of 2710 for 7850 kg/m^3 raises every frequency by sqrt(7850/2710); the dashpots follow."""
+    hertz = np.array(exact.cantilever_hz(**STEEL)) * sqrt(7850.0 / 2710.0)
+    path = recorded(tmp_path, [TIMES, ringing(hertz, zetas_of(hertz, 0.0034))], "time,deflection")
+    found = {one["figure"]: one for one in judge_case("ring-down", [path]).data["figures"]}
+    for name in ("f1", "f2", "f3"):
+        assert found[name]["error"] == pytest.approx(sqrt(7850.0 / 2710.0) - 1.0, rel=1e-3)
+        assert f"{7850.0 / 2710.0:.4g}" in found[name]["cause"]
+        assert not found[name.replace("f", "zeta")]["cause"]
+
+
+def test_dashpots_too_strong_are_not_told_from_implicit_euler(tmp_path):
+    """Both damp in proportion to the frequency: a factor of 1.7 is omega h/2 of a step of 1.4 zeta_1/omega_1."""
+    hertz = exact.cantilever_hz(**STEEL)
+    path = recorded(tmp_path, [TIMES, ringing(hertz, 1.7 * zetas_of(hertz))], "time,deflection")
+    found = {one["figure"]: one for one in judge_case("ring-down", [path]).data["figures"]}
+    assert found["zeta2"]["error"] == pytest.approx(0.7, rel=1e-3)
+    assert "implicit Euler" in found["zeta2"]["cause"]
+    assert "1.7 times" in found["zeta2"]["cause"]
+
+
+def test_a_mode_above_half_the_sampling_rate_is_not_read(tmp_path):
+    """Mode 3 of 484 Hz, sampled at 500 Hz."""
+    hertz = exact.cantilever_hz(**STEEL)
+    path = recorded(tmp_path, [TIMES[::8], ringing(hertz, zetas_of(hertz))[::8]], "time,deflection")
+    found = {one["figure"]: one for one in judge_case("ring-down", [path]).data["figures"]}
+    assert found["f1"]["passed"]
+    assert "500 Hz" in found["f3"]["lost"]
+
+
+RECORDS = Path(__file__).parent / "records"
+
+
+def test_a_run_that_diverges_is_refused_whatever_its_first_part_gives(tmp_path):
+    hertz = exact.cantilever_hz(**STEEL)
+    motion = ringing(hertz, zetas_of(hertz))
+    motion[900:] = np.nan
+    path = recorded(tmp_path, [TIMES, motion], "time,deflection")
+    assert judge_case("ring-down", [recorded(tmp_path, [TIMES[:900], motion[:900]], "time,deflection", "x.csv")])
+    with pytest.raises(InputError, match="1101"):
+        judge_case("ring-down", [path])
+
+
+@pytest.mark.parametrize(("share", "shift", "factor"), [(10, 0.0, 1.0), (1, 0.7, 1.0), (1, 0.0, 1e3)])
+def test_a_part_of_a_record_is_not_judged_as_the_whole(tmp_path, share, shift, factor):
+    """A chain that makes energy over 2 s has made little in 0.2 s; times of another start are of another motion."""
+    rows = np.loadtxt(RECORDS / "swinging-chain.csv", delimiter=",", skiprows=1)
+    rows = rows[: len(rows) // share]
+    path = recorded(tmp_path, [factor * rows[:, 0] + shift, rows[:, 1]], "time,energy")
+    with pytest.raises(InputError):
+        judge_case("swinging-chain", [path])
 
 
 def first_link_fixed(links):
@@ -221,7 +279,7 @@ def test_every_number_that_a_sheet_names_is_among_its_columns():
     ],
 )
 def test_a_public_defect_is_named_from_its_record_alone(record, name, figure, measured, words):
-    result = judge_case(name, [Path(__file__).parent / "records" / f"{record}.csv"])
+    result = judge_case(name, [RECORDS / f"{record}.csv"])
     found = next(one for one in result.data["figures"] if one["figure"] == figure)
     assert not result.data["passed"]
     assert found["value"] == pytest.approx(measured, rel=1e-3)

@@ -33,12 +33,16 @@ ALIASES, NEAR = 12, 0.01
 
 
 class Record(NamedTuple):
-    """Times (n,), s, and signals (n, channels) with their names; `notes`: what is not as in the file."""
+    """Times (n,), s, and signals (n, channels) with their names; `notes`: what is not as in the file.
+
+    `unfilled`: rows at the end of the file that have no value, as of a run that diverged.
+    """
 
     times: Array
     signals: Array
     names: list[str]
     notes: tuple[str, ...] = ()
+    unfilled: int = 0
 
 
 def read_record(path: Path) -> Record | None:
@@ -99,7 +103,7 @@ def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record
     even, digit = np.polynomial.Polynomial.fit(place, times, 1)(place), _last_digit(times)
     if 1e-6 * digit < abs(even - times).max() <= ROUNDED * digit:
         times, notes = even, [*notes, f"Times are those of the even spacing that the file rounds to {digit:g}."]
-    return Record(unit * times, table[:, 1:], names, tuple(notes))
+    return Record(unit * times, table[:, 1:], names, tuple(notes), len(whole) - 1 - int(np.flatnonzero(whole)[-1]))
 
 
 def _last_digit(times: Array) -> float:

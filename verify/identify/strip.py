@@ -138,7 +138,12 @@ def _assigned(beams: Sequence[Beam], rings: Sequence[RingDown]) -> tuple[list[tu
         weakest = min((modes for modes in used if len(modes) > 1), key=lambda m: min(map(_size, m)), default=None)
         misfits += 1
         if weakest is None or misfits >= sum(map(len, used)) - 1:  # as many as are left, which are of any strip
-            raise InputError("records: their frequencies are of no strip of these lengths, check length, unit of time")
+            text = "their frequencies are of no strip of these lengths, check length, unit of time"
+            for beam, ring in zip(beams, rings, strict=True):
+                if (first := float(_on_spring(beam, 0.0, 1)[0])) > FAST * ring.rate:
+                    text += f": mode 1 of {beam.length:g} m is near {first:.3g} Hz, more than {FAST} of the"
+                    raise InputError(f"records: {text} {ring.rate:.3g} frames a second, film faster")
+            raise InputError(f"records: {text}")
         weakest.remove(lost := min(weakest, key=_size))
         left_out.append(lost.hz)
 
@@ -150,7 +155,8 @@ def _on_spring(beam: Beam, compliance: float, count: int) -> Array:
 
 
 def _size(mode: RingMode) -> float:
-    return max(mode.amplitude)
+    """Amplitude times the radians that it lasts: a load is fitted by large modes that last a cycle."""
+    return max(mode.amplitude) / max(abs(mode.zeta), 1e-4)
 
 
 def _model(beams: Sequence[Beam], places: Sequence[tuple[int, int]], noise: Array) -> Model:

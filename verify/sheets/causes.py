@@ -15,12 +15,18 @@ from verify.sheets.sheet import Figure, Sheet
 
 ALIKE = 1.25
 """Factor within which the steps that several modes imply are one step: damping beyond the first order is less."""
+FOLLOWS = 5.0
+"""Largest error of a damping ratio, over the largest of the frequencies, that a wrong stiffness or mass makes."""
 EXCESS = 1e-4
 """Damping ratio beyond the exact one that has no cause: that of a record of finite length."""
 
 NEAR, SHARE = 3e-3, 0.2
 """Largest rms difference from a candidate, and over the rms error of the run: time steps move frequencies too."""
 MANY = range(4, 61)
+UNIFORM = 0.05
+"""Largest deviation, over the mean error, of frequencies that are off by one factor."""
+MILLI = 0.05
+"""Relative difference from a thousand of the ratio of a value in mm to one in m."""
 RIGHT = "give the joints at the wall Gregory's weights, EI/l times 8/3, 6/7, 24/23, or one of 2EI/l"
 GOOD = {"gregory": "take more links", "half": "take more links, or Gregory's weights: EI/l times 8/3, 6/7, 24/23"}
 BODIES = "give every link its mass m l at its centre, and the inertia m l^3/12 about it"
@@ -31,8 +37,12 @@ def cause(sheet: Sheet, figure: Figure, value: float, values: Mapping[str, float
     for one in figure.cause:
         if abs(value - one.value) <= one.within * abs(one.value):
             return one.because
+    if figure.unit == "m" and figure.exact and abs(value / figure.exact / 1e3 - 1.0) < max(figure.within, MILLI):
+        return f"{figure.column!r} is in mm: write the unit behind its name, as in '{figure.column}_mm'"
     if figure.read == "damping":
-        return numerical_damping(sheet, values)
+        rings = [one.error(values[one.name]) for one in sheet.figure if one.read == "frequency" and one.name in values]
+        follows = abs(figure.error(value)) < FOLLOWS * max(map(abs, rings), default=0.0)
+        return "" if follows else numerical_damping(sheet, values)
     if figure.read == "frequency" and sheet.chain:
         return discretisation(sheet, values, count)
     return ""
@@ -49,19 +59,22 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
     if not off:
         return ""
     gained = [mode for mode, (excess, _) in off.items() if excess < 0.0]
-    if all(abs(values[one.name]) < EXCESS * one.exact for one in sheet.figure if one.name in values and _damped(one)):
+    damped = [one for one in sheet.figure if one.read == "damping" and one.exact > 0.0 and one.name in values]
+    if all(abs(values[one.name]) < EXCESS * one.exact for one in damped):
         return "nothing damps the run: add the dashpots that the sheet says"
     if gained:
         listed = " and ".join(map(str, gained))
-        return f"the time step feeds energy into mode {listed}: halve it, or take an implicit integrator"
+        text = f"the time step feeds energy into mode {listed}, or the dashpots are too weak"
+        return f"{text}: halve the step to tell which, and take an implicit integrator or the dashpots of the sheet"
     steps = [2.0 * excess / omega for excess, omega in off.values()]
     if len(steps) > 1 and max(steps) < ALIKE * min(steps):
-        return f"the integrator damps as implicit Euler does at {with_unit(median(steps), 's')}: take one of order 2"
+        step, ratios = with_unit(median(steps), "s"), [values[one.name] / one.exact for one in damped]
+        # dashpots in proportion to the springs are as steps of order 1
+        dashpots = f", or dashpots are {median(ratios):.3g} times too strong" * (
+            len(ratios) > 1 and max(ratios) < ALIKE * min(ratios)
+        )
+        return f"the integrator damps as implicit Euler does at {step}{dashpots}: take one of order 2, or half the step"
     return "the integrator or a dashpot damps more than the sheet says: halve the step to tell which"
-
-
-def _damped(figure: Figure) -> bool:
-    return figure.read == "damping" and figure.exact > 0.0
 
 
 def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None) -> str:
@@ -80,7 +93,12 @@ def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None)
                     off = np.log(hertz[[one.mode - 1 for one in figures]]) - measured
                     rms = float(np.sqrt((off**2).mean()))
                     best = min(best or (rms, n, candidate), (rms, n, candidate), key=lambda one: one[0])
-    if best is None or best[0] > min(NEAR, SHARE * float(np.sqrt(((measured - exact) ** 2).mean()))):
+    off = measured - exact
+    if best is None or best[0] > min(NEAR, SHARE * float(np.sqrt((off**2).mean()))):
+        if float(off.std()) < min(NEAR, UNIFORM * abs(float(off.mean()))):
+            factor = float(np.exp(off.mean()))
+            text = f"all frequencies are {factor:.4g} times the exact ones, stiffness over mass {factor**2:.4g} times"
+            return f"{text}: check E, density, section and length"
         return "" if count else "the number of links would tell the cause: give it with --counts"
     _, n, candidate = best
     remedy = RIGHT if candidate.mass == "links" else BODIES

@@ -64,14 +64,17 @@ def judge_case(
     for count in counts or ():
         check_integer("counts", count, 1)
     figures = [one if within is None else _limited(one, within) for one in sheet.figure]
-    runs = [[_read(sheet, one, run) for one in figures] for run in (Run(sheet, Path(path)) for path in records)]
+    read = [Run(sheet, Path(path)) for path in records]
+    runs = [[_read(sheet, one, run) for one in figures] for run in read]
     orders = _orders(figures, runs, counts) if counts and len(runs) > 1 else {}
     if all(one.lost for one in runs[-1]):
         raise InputError(runs[-1][0].lost)
     last = {one.figure.name: one.value for one in runs[-1] if not one.lost}
     size = counts[-1] if counts else None
     whys = [cause(sheet, one.figure, one.value, last, size) if 1.0 < one.share < inf else "" for one in runs[-1]]
-    margins = [_margin(one, why) for one, why in zip(runs[-1], whys, strict=True)]
+    unread = {one.lost: one for one in reversed(runs[-1]) if one.lost}.values()  # one sentence of a mode's two figures
+    judged = [(one, why) for one, why in zip(runs[-1], whys, strict=True) if not one.lost or one in unread]
+    margins = [_margin(one, why) for one, why in judged]
     large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
     margins += [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
     titles = [Path(path).name for path in records]
@@ -79,7 +82,7 @@ def judge_case(
     figures_read = [_data(one, why, orders) for one, why in zip(runs[-1], whys, strict=True)]
     passed = all(margin.level != "not trusted" for margin in margins)
     data = {"case": case, "passed": passed, "figures": figures_read}
-    return Result(sheet.title, _tables(case, titles, runs, orders), margins=margins, data=data)
+    return Result(sheet.title, _tables(case, titles, runs, orders, read[-1].notes), margins=margins, data=data)
 
 
 def _data(one: Read, why: str, orders: Mapping[str, float]) -> dict[str, object]:
@@ -90,8 +93,10 @@ def _data(one: Read, why: str, orders: Mapping[str, float]) -> dict[str, object]
     return found | {"cause": why or None, "lost": one.lost or None, "passed": one.share <= 1.0}
 
 
-def _tables(case: str, titles: list[str], runs: list[list[Read]], orders: Mapping[str, float]) -> list[Table]:
-    """Figures of all runs, and the orders of their errors."""
+def _tables(
+    case: str, titles: list[str], runs: list[list[Read]], orders: Mapping[str, float], notes: Sequence[str]
+) -> list[Table]:
+    """Figures of all runs, and the orders of their errors; `notes`: what is not as in the file of the last."""
     columns = [Column("figure"), Column("run"), Column("value", "", ".7g"), Column("exact", "", ".9g"), Column("unit")]
     columns += [Column("error", format="+.3g"), Column("passes within", format=".3g"), Column("class")]
     note = "Errors are relative, absolute where the exact value is 0. Class A: a hundredth of what passes; B: a tenth."
@@ -101,7 +106,7 @@ def _tables(case: str, titles: list[str], runs: list[list[Read]], orders: Mappin
             figure, grade = one.figure, one.grade or ("not read" if one.lost else "fails")
             rows.append([figure.name, title, one.known(one.value), figure.exact, figure.unit or "1"])
             rows[-1] += [one.known(one.error), figure.within, grade]
-    tables = [Table(f"Figures of {case}", columns, rows, [note])]
+    tables = [Table(f"Figures of {case}", columns, rows, [note, *notes])]
     shown = [
         (x.figure.name, orders[x.figure.name], x.figure.order or None) for x in runs[-1] if x.figure.name in orders
     ]

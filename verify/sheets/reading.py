@@ -1,7 +1,7 @@
 """Figures of a record: what a sheet asks for, read from the columns of a table of numbers."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,14 @@ from verify.sheets.sheet import Figure, Reading, Sheet
 LENGTHS = FACTORS["m"] | {"µm": 1e-6}
 FAR = 2.0
 """Largest factor between a frequency of the record and that of the mode which it is taken for."""
+CUT = 2
+"""Rows without a value at the end of a record of a run that diverged; a logger may cut the last row."""
+ALIKE = 0.02
+"""Relative difference within which several frequencies are off by one factor."""
+LATE = 0.02
+"""Largest time of the first row over the duration of the sheet: a logger may skip the first step."""
+MILLI = 500.0, 2000.0
+"""Factors between times of a record and those of the sheet that tell milliseconds."""
 
 
 class Run:
@@ -26,8 +34,15 @@ class Run:
         record = read_record(path)
         if record is None:
             raise InputError(f"file {shown(str(path))}: no record, give a table with times in its first column, in s")
-        self.path, self.times = path, record.times
-        named = {self._word(name): index for index, name in reversed([*enumerate(record.names)])}
+        self.path, self.times, self.notes = path, record.times, record.notes
+        if record.unfilled >= CUT:
+            text = f"no value in its last {record.unfilled} rows, after {self.times[-1]:.4g} s: the run diverged"
+            raise InputError(f"file {shown(str(path))}: {text}, take a smaller step")
+        self.duration = sheet.chain.duration_s if sheet.chain else sheet.parameters.get("duration_s", 0.0)
+        if MILLI[0] * self.duration < self.times[-1] < MILLI[1] * self.duration:
+            text = f"times up to {self.times[-1]:.4g} s for {self.duration:g} s: name them 'time_ms' if they are in ms"
+            raise InputError(f"file {shown(str(path))}: {text}")
+        named = {self._word(name, sheet.columns): index for index, name in reversed([*enumerate(record.names)])}
         plain = all(name.startswith("column ") for name in record.names)  # no header: the order of the sheet
         self.signals: dict[str, Array] = {}
         for place, column in enumerate(sheet.columns[1:]):
@@ -40,33 +55,64 @@ class Run:
         self._rings: dict[tuple[str, float | None, float | None], RingDown] = {}
 
     @staticmethod
-    def _word(name: str) -> str:
-        """'tip_x' of 'Tip_x, mm' or 'tip_x [mm]'."""
-        return re.split(r"[\s,(\[/]", name.strip().strip('"').lower())[0]
+    def _word(name: str, columns: tuple[str, ...]) -> str:
+        """'tip_x' of 'Tip_x, mm', 'tip_x [mm]' or 'tip_x_mm'."""
+        word = re.split(r"[\s,(\[/]", name.strip().strip('"').lower())[0]
+        front, _, unit = word.rpartition("_")
+        return front if word not in columns and unit in LENGTHS else word
 
     def window(self, figure: Figure) -> tuple[Array, Array]:
         """Times and values of the column in the figure's window. Raises InputError where it has no sample."""
         since, until = (-np.inf if figure.from_s is None else figure.from_s), figure.until_s or np.inf
         inside = (self.times >= since * (1 - 1e-9)) & (self.times <= until * (1 + 1e-9))
-        if not inside.any() or (figure.until_s is not None and self.times[-1] < until * (1 - 1e-3)):
-            need = f"from {since if np.isfinite(since) else 0:g} s" + f" to {until:g} s" * bool(np.isfinite(until))
-            raise InputError(f"file {shown(str(self.path))}: {figure.name} needs samples {need}, record longer")
+        end = figure.until_s or (0.0 if figure.read in ("frequency", "damping") else self.duration)
+        step = (self.times[-1] - self.times[0]) / (len(self.times) - 1)  # the last sample may be one step early
+        if not inside.any() or self.times[-1] + 1.5 * step < end:
+            need = f"from {since if np.isfinite(since) else 0:g} s" + f" to {end:g} s" * bool(end)
+            text = f"{figure.name} needs samples {need}, it ends at {self.times[-1]:.4g} s: record longer"
+            raise InputError(f"file {shown(str(self.path))}: {text}")
+        if end and self.times[0] > max(LATE * self.duration, 1.5 * step):
+            text = f"its times start at {self.times[0]:.4g} s: give those from the start of the motion, from 0 on"
+            raise InputError(f"file {shown(str(self.path))}: {text}")
         return self.times[inside], self.signals[figure.column][inside]
 
-    def mode(self, figure: Figure, hertz: float) -> RingMode:
-        """The mode of the record that is nearest to a frequency, by ratio. Raises InputError."""
+    def mode(self, figure: Figure, hertz: float, exact: Sequence[float]) -> RingMode:
+        """The mode of the record that is nearest to a frequency, by ratio; `exact`: those of its column, Hz.
+
+        Raises InputError.
+        """
         key = figure.column, figure.from_s, figure.until_s
         if key not in self._rings:
             try:
                 self._rings[key] = ring_down(*self.window(figure))
             except InputError as error:
                 raise InputError(f"file {shown(str(self.path))}, {figure.column}: {error}") from None
-        found = min(self._rings[key].modes, key=lambda mode: abs(np.log(mode.undamped_hz / hertz)))
+        ring = self._rings[key]
+        factor = self._factor(ring, exact)
+        found = min(ring.modes, key=lambda mode: abs(np.log(mode.undamped_hz / (factor * hertz))))
         if not 1.0 / FAR < found.undamped_hz / hertz < FAR:
-            listed = ", ".join(f"{mode.hz:.4g}" for mode in self._rings[key].modes)
-            text = f"rings at {listed} Hz, none is mode {figure.mode} at {hertz:.4g} Hz: start it as the sheet says"
+            listed = ", ".join(f"{mode.hz:.4g}" for mode in ring.modes)
+            text = (
+                f"rings at {listed} Hz, none is mode {figure.mode} at {hertz:.4g} Hz: {self._why(ring, hertz, exact)}"
+            )
             raise InputError(f"file {shown(str(self.path))}: {figure.column} {text}")
         return found
+
+    @staticmethod
+    def _factor(ring: RingDown, exact: Sequence[float]) -> float:
+        """The factor by which two or more of the exact frequencies are off alike, 1 where there is none."""
+        factor, rings = ring.modes[0].undamped_hz / exact[0], np.array([mode.undamped_hz for mode in ring.modes])
+        alike = sum(bool((abs(rings / (factor * one) - 1.0) < ALIKE).any()) for one in exact)
+        return factor if alike > 1 else 1.0
+
+    def _why(self, ring: RingDown, hertz: float, exact: Sequence[float]) -> str:
+        """Why a record does not ring at a frequency: its sampling, a factor of all frequencies, or its start."""
+        if hertz > 0.45 * ring.rate:  # a mode next to half the sampling rate cannot be fitted
+            return f"sampled at {ring.rate:.4g} Hz, record {4.0 * max(exact):.2g} Hz or more"
+        if (factor := self._factor(ring, exact)) != 1.0:
+            text = f"frequencies are {factor:.4g} times those of the sheet"
+            return f"{text}, check the unit of time, the section, E and the density"
+        return "start it as the sheet says, and record it without noise"
 
 
 def frequency_of(sheet: Sheet, figure: Figure) -> float:
@@ -77,7 +123,9 @@ def frequency_of(sheet: Sheet, figure: Figure) -> float:
 def value(sheet: Sheet, figure: Figure, run: Run) -> float:
     """A figure of a run. Raises InputError where the record does not have it."""
     if figure.read in ("frequency", "damping"):
-        mode = run.mode(figure, figure.exact if figure.read == "frequency" else frequency_of(sheet, figure))
+        same = [one for one in sheet.figure if one.read == "frequency" and one.column == figure.column]
+        hertz = figure.exact if figure.read == "frequency" else frequency_of(sheet, figure)
+        mode = run.mode(figure, hertz, sorted(one.exact for one in same))
         return mode.undamped_hz if figure.read == "frequency" else mode.zeta
     found = READ[figure.read](*run.window(figure))
     if not np.isfinite(found):
