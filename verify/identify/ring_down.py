@@ -106,7 +106,7 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
     try:
         whole = _ring(t, y, n_modes)
         quiet = whole.white or whole.noise < QUIET * float(np.ptp(y, axis=0).max())
-        if quiet and all(abs(mode.zeta) < BRIEF for mode in whole.modes):
+        if quiet and not _fits_a_load(whole):
             return whole
     except InputError as error:
         whole = error
@@ -116,11 +116,18 @@ def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, 
             if isinstance(whole, InputError):
                 return later
             clearer = later.white or later.noise < CLEARER * whole.noise
+            if later.noise < whole.noise and _fits_a_load(whole) and not _fits_a_load(later):
+                return later
             if clearer and (not whole.white or len(later.modes) < len(whole.modes)):
                 return later
     if isinstance(whole, InputError):
         raise whole
     return whole
+
+
+def _fits_a_load(ring: RingDown) -> bool:
+    """Whether a mode decays at once, as one fitted to a hold or a rise of a load does."""
+    return any(abs(mode.zeta) >= BRIEF for mode in ring.modes)
 
 
 def _release(y: Array) -> int:
