@@ -93,3 +93,16 @@ def test_intervals_contain_the_truth_in_95_of_100_records():
 def test_a_record_in_which_nothing_rings_is_refused(times, signal, text):
     with pytest.raises(InputError, match=text):
         ring_down(times, signal)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_modes_of_a_strip_that_is_held_before_its_release_are_those_of_the_free_part(seed):
+    """A deflection held for 50 ms, then two modes, by a camera of 240 frames a second, its positions rounded."""
+    times = np.arange(384) / 240.0
+    modes = [(7.786, 0.0043, 11.64, 0.0), (48.99, 0.0043, 0.36, 0.0)]
+    held = np.where(times < 0.05, 12.0, record(np.maximum(times - 0.05, 0.0), modes))
+    found = ring_down(times, np.round(held + 0.12 * np.random.default_rng(seed).standard_normal(384), 1))
+    assert len(found.modes) == 2
+    for mode, (hz, zeta, *_) in zip(found.modes, modes, strict=True):
+        assert abs(mode.hz - hz) < 2.0 * mode.halves[0]  # four standard deviations
+        assert abs(mode.zeta - zeta) < 2.0 * mode.halves[1]

@@ -4,6 +4,7 @@ import json
 import shlex
 from itertools import pairwise
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -145,3 +146,28 @@ def test_a_frequency_of_no_mode_is_left_out_and_of_no_strip_refused(capsys):
     ):
         assert status_of(["identify", "--beam", *words]) == 2
         assert remedy in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1])
+def test_a_hold_before_the_release_and_missing_rows_leave_stiffness_and_clamp(capsys, share):
+    truth, compliance, rng = 0.5371, 0.03, np.random.default_rng(1)
+    for name, length in (("long.csv", 0.31), ("short.csv", 0.19)):
+        write(name, hertz(length, truth, compliance, 2), lambda hz: 0.0043, 3, noise=0.12, sizes=(11.6, 0.36))
+        head, *rows = Path(name).read_text().splitlines()
+        held = [f"{1e3 * k / 480.0:.3f},7.3" for k in range(24)]
+        moved = [f"{float(row.split(',')[0]) + 50.0:.3f},{row.split(',')[1]}" for row in rows]
+        kept = [row if rng.random() > share else row.split(",")[0] + "," for row in [*held, *moved]]
+        Path(name).write_text("\n".join([head, *kept]) + "\n")
+    found, _, _ = identified(capsys, "long.csv", "short.csv", "--length", "310mm", "--length", "190mm")
+    assert contains(found["bending_stiffness"], truth)
+    assert contains(found["compliance"], compliance)
+
+
+def test_a_camera_slower_than_the_first_mode_is_named(capsys):
+    for name, length in (("long.csv", 0.31), ("short.csv", 0.15)):
+        write(name, hertz(length, 0.5371, 0.02, 1), lambda hz: 0.0043, 3)
+        table = np.loadtxt(name, delimiter=",", skiprows=1)[::16]  # 30 frames a second for 35 Hz
+        np.savetxt(name, table, fmt="%.3f", header="t_ms,tip_mm", delimiter=",", comments="")
+    words = ["long.csv", "short.csv", "--length", "310mm", "--length", "150mm"]
+    assert status_of(["identify", "--beam", STEEL, *words]) == 2
+    assert "film faster" in capsys.readouterr().err

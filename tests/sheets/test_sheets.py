@@ -4,13 +4,14 @@ import subprocess
 import sys
 from math import pi, sqrt
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from tests.reference import exact_sheets as exact
 from verify import InputError
-from verify.sheets.judge import judge_case
+from verify.sheets.judge import judge_case, junit
 from verify.sheets.sheet import DATA, load, names
 from verify.sheets.write import engines, write
 
@@ -224,6 +225,9 @@ def test_an_error_that_more_links_leave_is_not_trusted(tmp_path):
     result = judge_case("elastica-4", paths, counts=[10, 20])
     assert not result.data["passed"]
     assert result.verdict.margins[0].name.startswith("order")
+    suite = ElementTree.fromstring(junit(result))
+    assert int(suite.get("failures")) == len(suite.findall("testcase/failure")) == 2
+    assert int(suite.get("tests")) == len(suite.findall("testcase")) == 4
 
 
 def test_links_that_turn_by_small_angles_alone_are_named(tmp_path):

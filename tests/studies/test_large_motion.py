@@ -111,6 +111,15 @@ def test_the_study_states_the_difference_of_links_and_elements_and_the_axial_sti
     assert any("EA is unknown" in note for note in result.tables[0].notes)
 
 
+@pytest.mark.parametrize("lines", [(), ("x = [0.0, 1.7]",)])
+def test_on_a_base_that_rests_or_glides_evenly_nothing_moves(lines):
+    """No energy is there that time steps could take."""
+    glides = scene(*lines)
+    result = result_of("large-motion", glides, SolutionCache(glides.beam))
+    assert result.verdict.level == "trusted"
+    assert measured(glides, "lag", model="fem", count=4) == pytest.approx(0.0, abs=1e-6 * L)
+
+
 def test_too_few_links_and_elements_are_not_trusted():
     swung = scene("rotation = [0.0, 0.0, 0.9]", "[large-motion]", "links = 2", "elements = 3", "tolerance = 1e-4")
     ran = run_scene(swung)

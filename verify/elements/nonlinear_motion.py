@@ -34,6 +34,9 @@ GROWTH, SHRINK, SAFETY = 1.5, 0.5, 0.8
 """A step changes by at most these factors, since the acceleration is that of a time that depends on it."""
 LEAST = 1e-9  # step over the duration at which the run gives up
 
+SMALL = 1e-12
+"""Energy over EI/L of a tip that moves by a millionth of the length."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class NonlinearMotion:
@@ -63,9 +66,13 @@ class NonlinearMotion:
 
     @property
     def energy_lost(self) -> float:
-        """Energy that the steps took, over the largest energy, of any sign: that of unresolved axial waves is added."""
+        """Energy that the steps took, over the largest energy, of any sign: that of unresolved axial waves is added.
+
+        The largest energy is at least `SMALL` EI/L, below which the motion is one of rounding.
+        """
         kinetic, strain, work = self.energies
-        return float((work - kinetic - strain)[-1] - (work - kinetic - strain)[0]) / float((kinetic + strain).max())
+        least = SMALL * self.model.beam.bending_stiffness / self.model.beam.length
+        return float(np.diff((work - kinetic - strain)[[0, -1]])[0]) / max(float((kinetic + strain).max()), least)
 
     def __repr__(self) -> str:
         return f"NonlinearMotion({self.model.count} elements, {self.times[-1]:g} s, {self.steps} steps)"

@@ -76,12 +76,14 @@ def judge_case(
     judged = [(one, why) for one, why in zip(runs[-1], whys, strict=True) if not one.lost or one in unread]
     margins = [_margin(one, why) for one, why in judged]
     large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
-    margins += [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
+    falling = [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
+    margins += falling
     titles = [Path(path).name for path in records]
     titles = titles if counts is None else [f"{name}, N = {n}" for name, n in zip(titles, counts, strict=True)]
     figures_read = [_data(one, why, orders) for one, why in zip(runs[-1], whys, strict=True)]
     passed = all(margin.level != "not trusted" for margin in margins)
     data = {"case": case, "passed": passed, "figures": figures_read}
+    data["orders"] = {one.name: one.failure if one.level == "not trusted" else None for one in falling}
     return Result(sheet.title, _tables(case, titles, runs, orders, read[-1].notes), margins=margins, data=data)
 
 
@@ -168,7 +170,9 @@ def _order_margin(figure: Figure, order: float) -> Margin:
     """An order far below the expected one: an error that more links or smaller steps do not lower as they should."""
     short = max(figure.order - order, 0.0)
     failure = f"the error of {figure.name} falls with order {order:.2g}, a right model has {figure.order} or more"
-    remedy = "look for a part of the model that does not depend on the size"
+    remedy = "halve the time step with the size, then look for a part of the model that does not depend on it"
+    if order < 0.0:
+        remedy = "give the runs in the order of --counts, then look for a part of the model that the size makes worse"
     return Margin(
         name=f"order of {figure.name}",
         size=short,
@@ -176,21 +180,26 @@ def _order_margin(figure: Figure, order: float) -> Margin:
         limit=1.0 - SLACK,
         is_error=False,
         failure=failure,
-        condition=f"the order {order:.2g} of {figure.name} still rises to {figure.order}",
+        condition=f"the order {order:.2g} of {figure.name} rises to {figure.order} by smaller time steps or more links",
         remedy=remedy,
     )
 
 
 def junit(result: Result) -> str:
-    """The figures of a judged run as JUnit XML, a test each."""
-    figures = result.data["figures"]
-    failed = sum(not one["passed"] for one in figures)
-    suite = ElementTree.Element("testsuite", name=result.data["case"], tests=str(len(figures)), failures=str(failed))
+    """The figures of a judged run, and the orders of large errors, as JUnit XML, a test each."""
+    figures, orders = result.data["figures"], result.data["orders"]
+    failed = sum(not one["passed"] for one in figures) + sum(map(bool, orders.values()))
+    count = len(figures) + len(orders)
+    suite = ElementTree.Element("testsuite", name=result.data["case"], tests=str(count), failures=str(failed))
     for one in figures:
         test = ElementTree.SubElement(suite, "testcase", classname=result.data["case"], name=one["figure"])
         if not one["passed"]:
             text = one["lost"] or f"{one['figure']} = {one['value']:.7g}, error {one['error']:+.3g}"
             ElementTree.SubElement(test, "failure", message=text).text = one["cause"] or text
+    for name, text in orders.items():
+        test = ElementTree.SubElement(suite, "testcase", classname=result.data["case"], name=name)
+        if text:
+            ElementTree.SubElement(test, "failure", message=text).text = text
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(suite, encoding="unicode") + "\n"
 
 
