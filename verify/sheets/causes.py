@@ -70,10 +70,12 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
     if len(steps) > 1 and max(steps) < ALIKE * min(steps):
         step, ratios = with_unit(median(steps), "s"), [values[one.name] / one.exact for one in damped]
         # dashpots in proportion to the springs are as steps of order 1
-        dashpots = f", or dashpots are {median(ratios):.3g} times too strong" * (
+        dashpots = f", or dashpots are {median(ratios):.3g} times those of the sheet" * (
             len(ratios) > 1 and max(ratios) < ALIKE * min(ratios)
         )
-        return f"the integrator damps as implicit Euler does at {step}{dashpots}: take one of order 2, or half the step"
+        return (
+            f"the integrator damps as implicit Euler does at {step}{dashpots}: take one of order 2, or halve the step"
+        )
     return "the integrator or a dashpot damps more than the sheet says: halve the step to tell which"
 
 
