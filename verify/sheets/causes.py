@@ -1,13 +1,15 @@
 """Likely causes of the errors of a run: values that mistakes give, the discretisation, the time step's own damping."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import pi
 from statistics import median
 
 import numpy as np
 
+from verify.arrays import Array
 from verify.compare.candidates import EULER, Candidate, candidates, frequencies_hz
 from verify.formatting import with_unit
+from verify.problem.beam import Beam
 from verify.problem.phrase import PREFIX
 from verify.scene.file import load_beam
 from verify.sheets.reading import frequency_of
@@ -80,30 +82,39 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
 
 
 def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None) -> str:
-    """The chain of `compare`'s candidates whose frequencies the run has, with `count` links or any number."""
+    """The chains of `compare`'s candidates with the frequencies of the run, of `count` links or any number."""
     figures = [one for one in sheet.figure if one.read == "frequency" and one.name in values]
     if sheet.chain is None or sheet.chain.space or any(sheet.chain.gravity) or len(figures) < 2:
         return ""
     beam = load_beam(PREFIX + sheet.chain.beam).beam
     measured, exact = (np.log([values[one.name] for one in figures]), np.log([one.exact for one in figures]))
-    best: tuple[float, int, Candidate] | None = None
-    for candidate in candidates(beam, "segments"):
-        for n in [count] if count else MANY:
-            if candidate.sized and candidate.theory == EULER:
-                hertz = frequencies_hz(candidate, beam, n, max(one.mode for one in figures))
-                if len(hertz) >= max(one.mode for one in figures):
-                    off = np.log(hertz[[one.mode - 1 for one in figures]]) - measured
-                    rms = float(np.sqrt((off**2).mean()))
-                    best = min(best or (rms, n, candidate), (rms, n, candidate), key=lambda one: one[0])
-    off = measured - exact
-    if best is None or best[0] > min(NEAR, SHARE * float(np.sqrt((off**2).mean()))):
+    off, modes = measured - exact, [one.mode for one in figures]
+    near = min(NEAR, SHARE * float(np.sqrt((off**2).mean())))
+    found = [one for one in _nearest(beam, measured, modes, [count] if count else MANY) if one[0] <= near]
+    if not found:
         if float(off.std()) < min(NEAR, UNIFORM * abs(float(off.mean()))):
             factor = float(np.exp(off.mean()))
             text = f"all frequencies are {factor:.4g} times the exact ones, stiffness over mass {factor**2:.4g} times"
             return f"{text}: check E, density, section and length"
         return "" if count else "the number of links would tell the cause: give it with --counts"
-    _, n, candidate = best
+    candidate, chains = found[0][2], " or ".join(f"{n} {one.label}" for _, n, one in found[:2])
     remedy = RIGHT if candidate.mass == "links" else BODIES
     if candidate.mass == "links" and candidate.wall in GOOD:
         remedy = GOOD[candidate.wall]
-    return f"these are the frequencies of {n} {candidate.label}: {remedy}"
+    fitted = "" if count else ", N fitted"
+    return f"these are the frequencies of {chains}{fitted}: {remedy}"
+
+
+def _nearest(beam: Beam, logs: Array, modes: list[int], counts: Sequence[int]) -> list[tuple[float, int, Candidate]]:
+    """(rms difference of logarithms of frequencies, links, candidate) of each chain with its best number of links."""
+    best = list[tuple[float, int, Candidate]]()
+    for candidate in candidates(beam, "segments"):
+        if candidate.sized and candidate.theory == EULER:
+            fits = []
+            for n in counts:
+                hertz = frequencies_hz(candidate, beam, n, max(modes))
+                if len(hertz) >= max(modes):
+                    off = np.log(hertz[[mode - 1 for mode in modes]]) - logs
+                    fits.append((float(np.sqrt((off**2).mean())), n, candidate))
+            best += [min(fits, key=lambda one: one[:2])] if fits else []
+    return sorted(best, key=lambda one: one[:2])
