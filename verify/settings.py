@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple, TypeAlias, get
 import msgspec
 from msgspec import Meta
 
-from verify.convert import convert
-from verify.validation import check_choice, python_scalar, unit
+from verify.validation import check_choice, convert, python_scalar, unit
 
 
 class WallRule(NamedTuple):

@@ -11,13 +11,13 @@ from scipy.linalg import eigh, null_space
 
 from verify import Beam, PointMass, PointSpring, Section, SegmentModel
 from verify.cli import status_of
-from verify.convert import convert
 from verify.engines.describe import describe
 from verify.engines.description import AXES
 from verify.engines.writers import mjcf, write
 from verify.exact.torsion import shafts, torsion_constant, torsion_hz
 from verify.problem.beam import in_plane
 from verify.problem.phrase import beam_table
+from verify.validation import convert
 
 PHRASE = "1 m x 40 x 8 mm steel, clamped-free"
 STEEL = convert(beam_table(PHRASE), Beam)

@@ -10,7 +10,6 @@ from scipy.linalg import eigh
 
 from verify import Beam, engine_chain
 from verify.cli import status_of
-from verify.convert import convert
 from verify.engines.choice import default_steps
 from verify.engines.damping import asked, damped
 from verify.engines.describe import describe
@@ -18,6 +17,7 @@ from verify.engines.description import Steps
 from verify.engines.judgement import judge_file
 from verify.errors import InputError
 from verify.problem.phrase import beam_table
+from verify.validation import convert
 
 PHRASE = "1 m x 40 x 8 mm steel, clamped-free"
 STEEL = convert(beam_table(PHRASE), Beam)

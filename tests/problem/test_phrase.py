@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from verify.convert import in_si
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.materials import MATERIALS
 from verify.problem.phrase import beam_table
+from verify.validation import in_si
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your-beam.md").read_text("utf-8")
 STEEL = {"youngs_modulus": 210e9, "density": 7850.0, "poissons_ratio": 0.3}

@@ -8,11 +8,11 @@ from msgspec.structs import replace
 from tests.beams import STRIP, STRIP_TOML
 from verify import load_scene, run_scene
 from verify.analysis.solution_cache import Bracket, SolutionCache
-from verify.convert import convert
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES, quantity
 from verify.scene.model import Complex, Gate, Scene
 from verify.scene.run import plan, run_gate
+from verify.validation import convert
 
 # --- Bands ---
 

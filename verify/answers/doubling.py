@@ -13,7 +13,6 @@ from verify.analysis.verdict import Margin, per_cent
 from verify.answers.beams import AnyBeam
 from verify.blas import one_blas_thread
 from verify.cases.base import Case
-from verify.convert import convert
 from verify.errors import InputError
 from verify.quantities.blade import Model, Path, TipPath, elements, told_path
 from verify.report.result import Column, Result, Table
@@ -21,7 +20,7 @@ from verify.scene.load import load_scene
 from verify.scene.model import Scene
 from verify.studies.base import Progress
 from verify.studies.large_motion import TITLES, LargeMotion, told
-from verify.validation import check_number
+from verify.validation import check_number, convert
 
 T = TypeVar("T")
 MINUTE = 60.0  # expected time of a run, s, at which the doubling ends

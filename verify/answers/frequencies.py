@@ -13,11 +13,10 @@ from verify.compare.compare import compare as compare_list
 from verify.compare.reading import UNITS, FrequencyList, ModeShapes, listed, read_frequencies
 from verify.compare.record import as_list, read_record, with_record
 from verify.compare.shapes import compare_shapes, read_mesh
-from verify.convert import convert
 from verify.identify.ring_down import ring_down
 from verify.io.mode_files import is_mesh
 from verify.report.result import Result
-from verify.validation import check_choice, check_number, check_type
+from verify.validation import check_choice, check_number, check_type, convert
 
 KINDS = "segments", "elements"
 """Kinds of candidates."""

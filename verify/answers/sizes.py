@@ -9,10 +9,9 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.variants import Rules
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
-from verify.convert import convert
 from verify.errors import InputError
 from verify.report.result import Column, Result, Table
-from verify.validation import check_integer, check_number
+from verify.validation import check_integer, check_number, convert
 
 
 @one_blas_thread()

@@ -6,10 +6,10 @@ from typing import Any
 import click
 
 from verify.commands.shared import BeamCommand, output_options, progress, show
-from verify.convert import convert, typed
 from verify.errors import InputError
 from verify.quantities.base import TABLES
 from verify.scene.load import load_scene
+from verify.validation import convert, typed
 
 
 @click.command(cls=BeamCommand)

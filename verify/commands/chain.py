@@ -19,14 +19,13 @@ from verify.commands.shared import (
     scene_argument,
     show,
 )
-from verify.convert import typed
 from verify.engines.damping import EXAMPLES
 from verify.engines.judgement import judge_file
 from verify.errors import InputError, printable
 from verify.report.result import Table
 from verify.scene.file import load_beam
 from verify.settings import DEFAULT, WALLS
-from verify.validation import unit
+from verify.validation import typed, unit
 
 Seconds = Annotated[float, unit("s")]
 RECORDS = ".csv", ".txt", ".tsv", ".dat", ".asc"

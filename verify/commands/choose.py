@@ -7,10 +7,9 @@ import click
 from verify.analysis.variants import Rules
 from verify.answers.sizes import choose as choose_sizes
 from verify.commands.shared import BeamCommand, format_options, overrides_option, progress, scene_argument, show
-from verify.convert import convert, literal, typed
 from verify.errors import InputError
 from verify.scene.file import load_beam
-from verify.validation import Relative
+from verify.validation import Relative, convert, literal, typed
 
 
 @click.command(cls=BeamCommand)

@@ -9,11 +9,10 @@ import click
 from verify.answers.frequencies import KINDS, compare_frequencies
 from verify.commands import shared
 from verify.compare.reading import UNITS, read_shapes, read_words, solve_model
-from verify.convert import typed
 from verify.errors import InputError
 from verify.scene.file import load_beam
 from verify.settings import THEORIES
-from verify.validation import Relative, unit
+from verify.validation import Relative, typed, unit
 
 Seconds = Annotated[float, unit("s")]
 Metres = Annotated[float, unit("m")]

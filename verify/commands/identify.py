@@ -7,11 +7,10 @@ import click
 
 from verify.answers.strips import identify_records
 from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
-from verify.convert import typed
 from verify.errors import printable
 from verify.problem.phrase import PREFIX
 from verify.scene.file import load_beam
-from verify.validation import unit
+from verify.validation import typed, unit
 
 Metres = Annotated[float, unit("m")]
 

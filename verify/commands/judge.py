@@ -8,9 +8,9 @@ import click
 
 from verify.commands import shared
 from verify.commands.choose import relative_error
-from verify.convert import convert, typed
 from verify.files import write_whole
 from verify.sheets.judge import judge_case, junit, page
+from verify.validation import convert, typed
 
 
 @click.command()

@@ -7,11 +7,11 @@ import click
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
-from verify.convert import convert, typed
 from verify.errors import InputError
 from verify.quantities.base import QUANTITIES
 from verify.scene.load import load_scene, tables_read, type_at
 from verify.studies.sweep import Sweep
+from verify.validation import convert, typed
 
 
 @click.command(cls=shared.BeamCommand)

@@ -6,10 +6,10 @@ import click
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
-from verify.convert import convert
 from verify.errors import InputError
 from verify.scene.load import load_scene, type_at
 from verify.studies.base import STUDIES
+from verify.validation import convert
 
 IN_TIME = {"drive", "slider", "motion"}
 READS: dict[str, set[str]] = {"spectrum": set(), "convergence": set(), "wave": {"drive"}}

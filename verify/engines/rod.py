@@ -17,13 +17,13 @@ from typing import Any
 import numpy as np
 
 from verify.arrays import Array
-from verify.convert import in_si
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.exact.torsion import shafts
 from verify.files import read_text
 from verify.problem.beam import Beam, in_plane
 from verify.problem.cross_section import SIZES
 from verify.problem.phrase import beam_table
+from verify.validation import in_si
 
 UNITS = {"x": "m", "y": "m", "z": "m", "EI": "N m^2", "EI2": "N m^2", "GJ": "N m^2", "rho_A": "kg/m", "rho_Ip": "kg m",
          "roll": "deg", "width": "m", "thickness": "m", "diameter": "m", "wall_thickness": "m", "E": "Pa",

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from verify.arrays import Array
-from verify.convert import convert
 from verify.errors import InputError, shown
-from verify.validation import check_number
+from verify.validation import check_number, convert
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

@@ -7,12 +7,11 @@ from typing import Annotated
 import msgspec
 from msgspec.structs import replace
 
-from verify.convert import entry_of
 from verify.errors import InputError, written
 from verify.problem.cross_section import CrossSection, Piece, Section, merged, piece_of, set_fields
 from verify.problem.point_attachments import Attachment, PointMass, PointSpring
 from verify.problem.supports import FIXED, Support
-from verify.validation import Items, Pair, Relative, check_number, unit, validate
+from verify.validation import Items, Pair, Relative, check_number, entry_of, unit, validate
 
 SHORTEST_SECTION = 1e-6  # shortest section relative to the beam's length; a shorter one may be a rounding residue
 

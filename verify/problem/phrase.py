@@ -3,11 +3,11 @@
 import re
 from typing import Any
 
-from verify.convert import NUMBER, in_si
 from verify.errors import InputError, near_name, shown
 from verify.problem.cross_section import SIZES
 from verify.problem.materials import MATERIALS, SPELLINGS
 from verify.problem.supports import SUPPORTS
+from verify.validation import NUMBER, in_si
 
 EXAMPLE = "1 m x 40 x 8 mm steel, clamped-free"
 PREFIX = "beam: "  # begins a scene's name that is a beam in one line (see `scene.load.load_scene`)

@@ -24,11 +24,10 @@ from msgspec import Meta
 
 from verify.analysis.solution_cache import Bracket, SolutionCache
 from verify.blas import one_blas_thread
-from verify.convert import convert, description_of, entry_of, extra_of, type_name, typed
 from verify.errors import InputError, near_name, shown
 from verify.estimate import Value
 from verify.registry import Registry
-from verify.validation import python_scalar
+from verify.validation import convert, description_of, entry_of, extra_of, python_scalar, type_name, typed
 
 if TYPE_CHECKING:
     from verify.scene.model import Scene as Scene  # noqa: PLC0414

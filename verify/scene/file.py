@@ -8,11 +8,11 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from verify.convert import RULE, convert, entry_of, structs_of, toml, typed
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists, read_text
 from verify.problem.beam import Beam
 from verify.problem.phrase import PREFIX, beam_table
+from verify.validation import RULE, convert, entry_of, structs_of, toml, typed
 
 DATA = Path(__file__).parent / "data"
 STARTER = DATA / "starter.toml"

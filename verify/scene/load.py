@@ -6,13 +6,13 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import convert
 from verify.errors import InputError, near_name, raise_all
 from verify.problem.slider import OF_ONE_LAW
 from verify.quantities.base import QUANTITIES
 from verify.scene.file import BEAM_KEYS, MAX_SENTENCES, key_of, read_tables, scene_path, set_values, type_in
 from verify.scene.model import Scene
 from verify.studies.base import STUDIES, Study, studies_of
+from verify.validation import convert
 
 TYPES = {field.name: field.type for field in msgspec.structs.fields(Scene) if field.name != "studies"}
 """Types of the keys of a scene that belong to no study."""

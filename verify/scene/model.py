@@ -11,7 +11,6 @@ from verify.actuators.on_beam import BeamInTime, beam_in_time
 from verify.actuators.patch import Patch
 from verify.actuators.shunt import Load
 from verify.actuators.transducers import Transducer
-from verify.convert import RULE
 from verify.errors import InputError, raise_all
 from verify.formatting import one_line
 from verify.problem.base_motion import Base, Prescribed, polynomial, still, tabulated
@@ -21,7 +20,7 @@ from verify.problem.slider import Slider
 from verify.problem.supports import check_free
 from verify.scene.file import NamedBeam
 from verify.settings import DriveKind, Reference
-from verify.validation import check_number, check_position, unit
+from verify.validation import RULE, check_number, check_position, unit
 
 
 class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

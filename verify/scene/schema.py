@@ -9,11 +9,10 @@ from typing import Any
 
 import msgspec
 
-from verify.convert import description_of, entry_of, structs_of
 from verify.quantities.base import QUANTITIES
 from verify.scene.model import Scene
 from verify.studies.base import STUDIES
-from verify.validation import check_choice
+from verify.validation import check_choice, description_of, entry_of, structs_of
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """Read by TOML editors."""

@@ -8,10 +8,10 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.compare.record import read_record
-from verify.convert import FACTORS
 from verify.errors import InputError, shown
 from verify.identify.ring_down import RingDown, RingMode, ring_down
 from verify.sheets.sheet import Figure, Reading, Sheet
+from verify.validation import FACTORS
 
 LENGTHS = FACTORS["m"] | {"µm": 1e-6}
 FAR = 2.0

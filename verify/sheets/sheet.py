@@ -6,10 +6,10 @@ from typing import Annotated, Literal, TypeAlias
 import msgspec
 from msgspec import Meta
 
-from verify.convert import convert
 from verify.errors import InputError, near_name, shown
 from verify.scene.file import read_toml
 from verify.settings import Wall
+from verify.validation import convert
 
 DATA = Path(__file__).with_name("data")
 Reading: TypeAlias = Literal[

@@ -10,7 +10,6 @@ from msgspec import Meta
 from verify.analysis.solution_cache import SolutionCache
 from verify.analysis.verdict import Margin, per_cent, verdict_of
 from verify.arrays import Array
-from verify.convert import convert
 from verify.elements.nonlinear_motion import RHO
 from verify.errors import InputError
 from verify.formatting import unit_over, with_unit
@@ -21,6 +20,7 @@ from verify.report.result import Column, Movie, Result, Table
 from verify.settings import Joints
 from verify.studies.base import Progress, Scene, Study
 from verify.studies.charts import beam_movie, line_chart, model_style, percent, si
+from verify.validation import convert
 
 FRAMES = 96
 LOOSER = 10.0  # factor of the tolerance with the smaller numbers: their difference has the error of the steps
