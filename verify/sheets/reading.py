@@ -101,9 +101,13 @@ class Run:
     @staticmethod
     def _factor(ring: RingDown, exact: Sequence[float]) -> float:
         """The factor by which two or more of the exact frequencies are off alike, 1 where there is none."""
-        factor, rings = ring.modes[0].undamped_hz / exact[0], np.array([mode.undamped_hz for mode in ring.modes])
-        alike = sum(bool((abs(rings / (factor * one) - 1.0) < ALIKE).any()) for one in exact)
-        return factor if alike > 1 else 1.0
+        rings = np.array([mode.undamped_hz for mode in ring.modes])
+
+        def alike(factor: float) -> int:
+            return sum(bool((abs(rings / (factor * one) - 1.0) < ALIKE).any()) for one in exact)
+
+        factor = float(rings[0] / exact[0])
+        return factor if alike(factor) > max(alike(1.0), 1) else 1.0
 
     def _why(self, ring: RingDown, hertz: float, exact: Sequence[float]) -> str:
         """Why a record does not ring at a frequency: its sampling, a factor of all frequencies, or its start."""
