@@ -98,9 +98,10 @@ def cases():
     yield CASES
     for name in names():
         sheet = load(name)
+        exact = [f"{x.exact:.10g} {x.unit}".removesuffix(" 1") for x in sheet.figure]
         rows = [
-            (f"`{x.name}`", x.meaning, f"{x.exact:.10g} {x.unit}", f"{x.within:g}", x.order or "", x.source)
-            for x in sheet.figure
+            (f"`{x.name}`", x.meaning, value, f"{x.within:g}", x.order or "", x.source)
+            for x, value in zip(sheet.figure, exact, strict=True)
         ]
         files = ", ".join(engines(name)) or "none: the sheet says what to build"
         yield f"({name})=\n## {name}\n\n{sheet.title}. Columns: {', '.join(sheet.columns)}. Files for: {files}.\n"

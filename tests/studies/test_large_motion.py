@@ -191,10 +191,10 @@ def test_a_table_of_a_polynomial_moves_it_as_the_polynomial_does():
         assert abs(tips[0]) > 0.01
 
 
-def test_the_command_prints_the_study_with_numbers_of_the_user(tmp_path, capsys):
+def test_the_table_of_a_scene_with_a_base_is_its_large_motion_with_numbers_of_the_user(tmp_path, capsys):
     path = tmp_path / "my-blade.toml"
     path.write_text(BLADE + "y = [0.0, 0.0, 0.3]\n")
-    words = ["table", str(path), "--study", "large-motion", "links=6", "elements=3", "--json"]
+    words = ["table", str(path), "links=6", "elements=3", "--json"]
     assert status_of(words) == 0
     rows = json.loads(capsys.readouterr().out)["tables"][0]["rows"]
     assert [row["N"] for row in rows] == [6, 12, 3, 6]

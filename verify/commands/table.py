@@ -7,7 +7,7 @@ import click
 from verify.analysis.solution_cache import SolutionCache
 from verify.commands import shared
 from verify.errors import InputError
-from verify.scene.load import load_scene, type_at
+from verify.scene.load import load_scene, tables_of, type_at
 from verify.studies.base import STUDIES
 from verify.validation import convert
 
@@ -20,15 +20,16 @@ READS |= {"large-motion": {"base", "drive"}, "motion": IN_TIME, "motor": IN_TIME
 @click.command(cls=shared.BeamCommand)
 @shared.scene_argument
 @click.argument("options", nargs=-1, metavar="[KEY=VALUE]...")
-@click.option("--study", default="convergence", show_default=True, metavar="NAME", help="Section of the study.")
+@click.option("--study", metavar="NAME", help="Section of the study [default: convergence, with [base] large-motion].")
 @shared.overrides_option
 @shared.cluster_options
 @shared.output_options
-def table(scene: str, options: tuple[str, ...], study: str, overrides: tuple[str, ...], **formats: Any) -> None:
+def table(scene: str, options: tuple[str, ...], study: str | None, overrides: tuple[str, ...], **formats: Any) -> None:
     """Run one study of SCENE and print its tables; KEY=VALUE sets an option of the study.
 
     Example: `verify table steel-cantilever modes=1-5 counts=10,20,49 wall=gregory,half`
     """
+    study = study or ("large-motion" if "base" in tables_of(scene, overrides, set()) else "convergence")
     keys = STUDIES.named(study).__struct_fields__
     for key, _, text in (option.partition("=") for option in options):
         homes = (f"{table}.{key}" for table in ("beam", "drive", "slider"))
