@@ -142,6 +142,30 @@ def test_sizes_between_points_are_those_of_a_cone(tmp_path):
     assert sum(link.mass for link in found["links"]) == pytest.approx(900 * 1.2 * (0.014 * 4.5e-3 + 0.012 * 3e-3 / 12))
 
 
+@pytest.mark.parametrize("space", [False, True])
+def test_a_chain_for_a_step_runs_as_its_table_states(space, tmp_path):
+    """The fewest links at a step: poles of MuJoCo's own transition matrix."""
+    mujoco = pytest.importorskip("mujoco")
+    path = helix(tmp_path / "helix.csv")[0] if space else table(
+        tmp_path / "arc.csv", x=np.sin(ARC), y=1 - np.cos(ARC), EI=0.2, rho_A=0.7
+    )  # fmt: skip
+    wanted = {"step": 4e-3, "engine": "mujoco", "damping": "2% at 1", "mode": 2}
+    result = curve_chain(path, path=tmp_path / "rod.xml", **wanted)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "rod.xml"))
+    data, n = mujoco.MjData(model), model.nv
+    mujoco.mj_forward(model, data)
+    matrix = np.zeros((2 * n, 2 * n))
+    mujoco.mjd_transitionFD(model, data, 1e-7, True, matrix, None, None, None)
+    values = np.linalg.eigvals(matrix)
+    poles = sorted(np.log(values[values.imag > 0]) / model.opt.timestep, key=abs)[:2]
+    (ran,) = (one for one in result.tables if one.title == "As it runs")
+    assert model.opt.timestep == wanted["step"]
+    assert [row[4] for row in ran.rows] == pytest.approx([s.imag / (2 * np.pi) for s in poles], rel=1e-6)
+    assert [row[7] for row in ran.rows] == pytest.approx([-s.real / abs(s) for s in poles], rel=1e-4)
+    with pytest.raises(InputError, match="a step of"):
+        curve_chain(path, **wanted | {"step": 0.1})
+
+
 def as_sdf(chain, path):
     """Frequencies by absolute poses and axes in the links, as of SDF 1.6."""
     from scipy.spatial.transform import Rotation

@@ -9,7 +9,7 @@ Bodies carry the rest pose, so that all springs are at rest at zero angles, what
 spring.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -94,6 +94,14 @@ class CurvedChain(RigidChain):
         moved = 1.0 * (first <= np.arange(self.count)[:, None])
         arms = np.cross(about, self.bodies[1][:, None] - at).transpose(0, 2, 1)
         return np.asarray(arms * moved[:, None]), np.asarray(moved)
+
+    @property
+    def on_chords(self) -> "CurvedChain":
+        """The chain with centres of mass on its chords, order 2, as of straight links from joint to joint."""
+        masses, centres, inertias = self.bodies
+        starts, ways = self.places[:-1], self.frames[:, :, 0]
+        centres = starts + np.einsum("ni,ni->n", centres - starts, ways)[:, None] * ways
+        return replace(self, bodies=(masses, centres, inertias))
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
