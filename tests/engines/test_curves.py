@@ -227,25 +227,8 @@ def test_links_run_from_point_to_point_without_a_count(tmp_path):
         diameter=[4e-3, 3.5e-3, 3e-3, 2e-3],
     )
     made = tmp_path / "branch.json"
-    assert (
-        status_of(
-            [
-                "chain",
-                str(path),
-                "--set",
-                "E=2GPa",
-                "--set",
-                "rho=900",
-                "--mode",
-                "2",
-                "--error",
-                "30%",
-                "--to",
-                str(made),
-            ]
-        )
-        == 0
-    )
+    words = ["--set", "E=2GPa", "--set", "rho=900", "--mode", "2", "--error", "30%", "--to", str(made)]
+    assert status_of(["chain", str(path), *words]) == 0
     links = json.loads(made.read_text())["links"]
     assert [one["length"] for one in links] == pytest.approx(
         [np.hypot(0.02, 0.01), 0.05, np.hypot(0.03, 0.03)], rel=1e-9
@@ -267,7 +250,7 @@ BAD = {
     "row 1 has 4 cells, its header 3": ("x,y,EI" + ROWS, ()),
     "is not below 1e.50": ("x,y,EI,rho_A\n0,0,1,1\n1e200,0,1,1", ()),
     "ends meet": ("x,y,EI,rho_A\n0,0,1,1\n1,1,1,1\n0,2,1,1\n0,0,1,1", ()),
-    "column of the table": ("x,y,EI,rho_A" + ROWS, ("EI=2",)),
+    "belongs to the table": ("x,y,EI,rho_A" + ROWS, ("EI=2",)),
     "E has no effect": ("x,y,EI,rho_A" + ROWS, ("E=2GPa",)),
     "overrides has 3": ("x,y,EI,rho_A" + ROWS, (3,)),
     "is not above 0": ("x,y,EI,rho_A\n0,0,-1,1\n1,0,1,1", ()),

@@ -139,6 +139,7 @@ def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
 def _parts(rod: Rod, nodes: Array) -> str:
     """What the links are, and the order of their errors."""
     why = "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
+    why += ", in twist order 2" * (rod.in_space and not len(rod.jumps))
     why = "order 2 by unequal lengths" if np.ptp(h := np.diff(nodes)) > ALIKE * h[0] else why
     return f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
 

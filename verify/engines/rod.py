@@ -157,7 +157,7 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
     for word in as_tuple("overrides", overrides, str):
         name, _, text = (part.strip() for part in word.partition("="))
         if name not in UNITS or name in {*table, "z"}:
-            text = near_name(name, tuple(UNITS)[3:]) if name not in UNITS else "is a column of the table"
+            text = near_name(name, tuple(UNITS)[3:]) if name not in UNITS else f"{name} belongs to the table"
             raise InputError(f"--set {shown(word)}: {text}")
         fixed[name] = in_si(text, UNITS[name], name)
     if "," in str(section):
@@ -165,11 +165,9 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
     own = beam_table(f"1 m x {section}, clamped-free") | {"supports": ("clamped", "free")} if section else {}
     rows = [fixed | {name: float(column[i]) for name, column in table.items()} for i in range(count)]
     each = [_values(tuple(sorted(row.items())), tuple(own.items()), space, path.name) for row in rows]
-    points, values = (
-        np.stack([table.get(name, np.zeros(count)) for name in "xyz"], axis=1),
-        np.array([v for v, _ in each]),
-    )
-    if not (abs(points) < HUGE).all() or not (abs(values) < HUGE).all():
+    points = np.stack([table.get(name, np.zeros(count)) for name in "xyz"], axis=1)
+    values = np.array([one for one, _ in each])
+    if not (abs(np.hstack([points, values])) < HUGE).all():
         raise InputError(f"{path.name}: a value is not below {HUGE:g}, check its unit")
     steps, ahead = np.diff(points, axis=0), points - points[0]
     if not np.linalg.norm(ahead[-1]) > MEET * np.linalg.norm(steps, axis=1).sum():
