@@ -7,6 +7,7 @@ Gazebo. Joints lie on the curve and turn about the axes of the section there. Al
 """
 
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -44,16 +45,27 @@ directions = {"bending": -axes[:, :, 1], "width": axes[:, :, 2], "torsion": axes
 fig = plt.figure(layout="constrained")
 ax = fig.add_subplot(projection="3d")
 ax.plot(*chain.places.T * 1e3, "k.-", label="at rest")
+curves = [chain.places]
 for mode, shape in enumerate(shapes.T):
     moved = np.zeros_like(chain.places)
     for (name, j, _), angle in zip(chain.unknowns("coupled"), shape, strict=True):
         about = directions[name.partition("_")[2]][j]
         moved[j:] += angle * np.cross(about, chain.places[j:] - chain.places[j])
-    scaled = chain.places + 0.03 * moved / np.linalg.norm(moved, axis=1).max()
-    ax.plot(*scaled.T * 1e3, label=f"mode {mode + 1}: {exact[mode]:.2f} Hz, {100.0 * errors[0, mode]:+.4f} %")
+    curves.append(chain.places + 0.03 * moved / np.linalg.norm(moved, axis=1).max())
+    ax.plot(*curves[-1].T * 1e3, label=f"mode {mode + 1}: {exact[mode]:.2f} Hz, {100.0 * errors[0, mode]:+.4f} %")
 ax.set(xlabel="x, mm", ylabel="y, mm", zlabel="z, mm", title=f"{chain.count} rigid pieces")
 ax.set_box_aspect(np.ptp(chain.places, axis=0) + 0.03)
 ax.legend()
 plt.show()
+
+# %%
+# With PyVista the same as tubes, in a picture next to the table.
+if find_spec("pyvista"):
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True)
+    for curve, colour in zip(curves, ("black", "tab:blue", "tab:orange", "tab:green"), strict=True):
+        plotter.add_mesh(pyvista.Spline(curve, 400).tube(radius=7e-4), color=colour)
+    plotter.screenshot(path.with_suffix(".png"))
 
 print(f"largest error of {chain.count} pieces: {error:.1e}")

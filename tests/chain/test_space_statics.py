@@ -164,6 +164,8 @@ def test_arcs_and_helices_at_rest_have_the_frequencies_of_rods_with_order_four(r
         (ROD, {"moment": (0.0, np.nan, 0.0)}, "moment"),
         (ROD, {"count": 1}, "count"),
         (ROD, {"curvature": lambda s: s}, "curvature"),
+        (ROD, {"curvature": 3.0}, "curvature"),
+        (ROD, {"stiffness": -1.0}, "GJ and two EI"),
         (ROD, {"stiffness": (1.0, 0.0, 2.0)}, "stiffness"),
         (STEPPED, {"stiffness": (1.0, 1.0, 2.0)}, "stiffness"),
     ],

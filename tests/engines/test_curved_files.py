@@ -147,11 +147,13 @@ def test_chords_are_right_below_the_limit_and_their_centres_are_the_remedy_above
     path, exact = helix(tmp_path / "helix.csv", points=240)
     errors = {}
     for n in (12, 24):
-        curve_chain(path, n, path=tmp_path / "pieces.xml")
+        result = curve_chain(path, n, path=tmp_path / "pieces.xml")
         text = re.sub(r'(<inertial pos="\S+) [^"]*"', r'\1 0 0"', (tmp_path / "pieces.xml").read_text())
         (tmp_path / "chords.xml").write_text(text)
         for name in ("pieces", "chords"):
             errors[name, n] = mujoco_hz(tmp_path / f"{name}.xml")[0] / exact[0] - 1.0
+        (table,) = (one for one in result.tables if one.title == "Frequencies")
+        assert table.rows[0][4:] == pytest.approx((errors["pieces", n], errors["chords", n]), rel=0.02, abs=1e-6)
         coarse, fine = (judge_file(tmp_path / "chords.xml", None, 3, within=within) for within in (0.1, 1e-5))
         assert (coarse.data["passed"], fine.data["passed"]) == (True, False)
         assert coarse.data["chains"][0]["faults"] == []

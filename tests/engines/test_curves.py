@@ -131,9 +131,39 @@ def test_sizes_between_points_are_those_of_a_cone(tmp_path):
     path = table(tmp_path / "cone.csv", x=[0.0, 1.2], y=0.0, diameter=[6e-3, 3e-3])
     joints = curve_chain(path, 12, overrides=["E=2GPa", "rho=900"], error=0.3).data["joints"]
     assert joints[7].hinges[0].stiffness == pytest.approx(2e9 * np.pi / 64 * 4.25e-3**4 / 0.1, rel=1e-9)
-    path = table(tmp_path / "wedge.csv", x=[0.0, 1.2], y=0.0, thickness=[6e-3, 3e-3])
-    joints = curve_chain(path, 12, overrides=["E=2GPa", "rho=900", "width=0.02"], error=0.3).data["joints"]
-    assert joints[7].hinges[0].stiffness == pytest.approx(2e9 * 0.02 * 4.25e-3**3 / 12 / 0.1, rel=1e-9)
+    path = table(tmp_path / "wedge.csv", x=[0.0, 1.2], y=0.0, z=0.0, width=[0.02, 0.008], thickness=[6e-3, 3e-3])
+    found = curve_chain(path, 12, overrides=["E=2GPa", "rho=900", "nu=0.3"], error=0.3).data
+    b, h, ratio = 0.013, 4.25e-3, 4.25 / 13
+    saint_venant = b * h**3 * (1 / 3 - 0.21 * ratio * (1 - ratio**4 / 12))  # Roark, to 0.5 %
+    stiffness = [2e9 * b * h**3 / 12, 2e9 * h * b**3 / 12, 2e9 / 2.6 * saint_venant]
+    assert [one.stiffness * 0.1 for one in found["joints"][7].hinges] == pytest.approx(stiffness, rel=5e-3)
+    bending = [one.stiffness * 0.1 for one in found["joints"][7].hinges[:2]]
+    assert bending == pytest.approx(stiffness[:2], rel=1e-9)
+    assert sum(link.mass for link in found["links"]) == pytest.approx(900 * 1.2 * (0.014 * 4.5e-3 + 0.012 * 3e-3 / 12))
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_chain_for_a_step_runs_as_its_table_states(space, tmp_path):
+    """The fewest links at a step: poles of MuJoCo's own transition matrix."""
+    mujoco = pytest.importorskip("mujoco")
+    path = helix(tmp_path / "helix.csv")[0] if space else table(
+        tmp_path / "arc.csv", x=np.sin(ARC), y=1 - np.cos(ARC), EI=0.2, rho_A=0.7
+    )  # fmt: skip
+    wanted = {"step": 4e-3, "engine": "mujoco", "damping": "2% at 1", "mode": 2}
+    result = curve_chain(path, path=tmp_path / "rod.xml", **wanted)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "rod.xml"))
+    data, n = mujoco.MjData(model), model.nv
+    mujoco.mj_forward(model, data)
+    matrix = np.zeros((2 * n, 2 * n))
+    mujoco.mjd_transitionFD(model, data, 1e-7, True, matrix, None, None, None)
+    values = np.linalg.eigvals(matrix)
+    poles = sorted(np.log(values[values.imag > 0]) / model.opt.timestep, key=abs)[:2]
+    (ran,) = (one for one in result.tables if one.title == "As it runs")
+    assert model.opt.timestep == wanted["step"]
+    assert [row[4] for row in ran.rows] == pytest.approx([s.imag / (2 * np.pi) for s in poles], rel=1e-6)
+    assert [row[7] for row in ran.rows] == pytest.approx([-s.real / abs(s) for s in poles], rel=1e-4)
+    with pytest.raises(InputError, match="a step of"):
+        curve_chain(path, **wanted | {"step": 0.1})
 
 
 def as_sdf(chain, path):
@@ -197,39 +227,33 @@ def test_links_run_from_point_to_point_without_a_count(tmp_path):
         diameter=[4e-3, 3.5e-3, 3e-3, 2e-3],
     )
     made = tmp_path / "branch.json"
-    assert (
-        status_of(
-            [
-                "chain",
-                str(path),
-                "--set",
-                "E=2GPa",
-                "--set",
-                "rho=900",
-                "--mode",
-                "2",
-                "--error",
-                "30%",
-                "--to",
-                str(made),
-            ]
-        )
-        == 0
-    )
+    words = ["--set", "E=2GPa", "--set", "rho=900", "--mode", "2", "--error", "30%", "--to", str(made)]
+    assert status_of(["chain", str(path), *words]) == 0
     links = json.loads(made.read_text())["links"]
     assert [one["length"] for one in links] == pytest.approx(
         [np.hypot(0.02, 0.01), 0.05, np.hypot(0.03, 0.03)], rel=1e-9
     )
 
 
+ROWS = "\n0,0,1,1\n1,0.2,1,1\n2,1,1,1"
 BAD = {
     "EI is missing": ("x,y\n0,0\n1,0\n2,1", ()),
     "rho_Ip is missing": ("x,y,z,EI,GJ,rho_A\n0,0,0,1,1,1\n1,0,0,1,1,1", ()),
-    "no column": ("x,y,stiffness\n0,0,1\n1,0,1", ()),
-    "no finite number": ("x,y,EI,rho_A\n0,0,1,1\n1,,1,1", ()),
-    "one place": ("x,y,EI,rho_A\n0,0,1,1\n0,0,1,1", ()),
-    "column of the table": ("x,y,EI,rho_A\n0,0,1,1\n1,0,1,1", ("EI=2",)),
-    "not positive": ("x,y,EI,rho_A\n0,0,-1,1\n1,0,1,1", ()),
+    "no column: did you mean 'EI'": ("x,y,Ei,rho_A" + ROWS, ()),
+    "column EI is there 2 times": ("x,y,EI,EI" + ROWS, ()),
+    "in a header": (ROWS[1:], ()),
+    "it has 1 points": ("x,y\n0,0", ()),
+    "such as x": ("", ()),
+    "row 2: y": ("x,y,EI,rho_A\n0,0,1,1\n1,,1,1", ()),
+    "row 1: y = '0 kg'": ("x,y [kg],EI,rho_A" + ROWS, ()),
+    "row 2: EI = 'nan": ("x,y,EI,rho_A\n0,0,1,1\n1,1,nan,1", ()),
+    "row 1 has 4 cells, its header 3": ("x,y,EI" + ROWS, ()),
+    "is not below 1e.50": ("x,y,EI,rho_A\n0,0,1,1\n1e200,0,1,1", ()),
+    "ends meet": ("x,y,EI,rho_A\n0,0,1,1\n1,1,1,1\n0,2,1,1\n0,0,1,1", ()),
+    "belongs to the table": ("x,y,EI,rho_A" + ROWS, ("EI=2",)),
+    "E has no effect": ("x,y,EI,rho_A" + ROWS, ("E=2GPa",)),
+    "overrides has 3": ("x,y,EI,rho_A" + ROWS, (3,)),
+    "is not above 0": ("x,y,EI,rho_A\n0,0,-1,1\n1,0,1,1", ()),
 }
 
 

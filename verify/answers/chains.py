@@ -1,10 +1,12 @@
 """The joints of a beam as a chain of rigid bodies."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import inf, isfinite
 from pathlib import Path
+from typing import Any
 
 from verify.analysis.margins import beam_margins
 from verify.analysis.solution_cache import SolutionCache
@@ -12,6 +14,7 @@ from verify.analysis.verdict import FINE, Margin, per_cent
 from verify.answers.beams import AnyBeam, named
 from verify.blas import one_blas_thread
 from verify.engines.choice import Candidate, choose, default_steps, largest_mode, trade
+from verify.engines.curved import CurvedChain
 from verify.engines.damping import Asked, asked, damped
 from verify.engines.describe import describe
 from verify.engines.description import MOST_LINKS, RigidChain, Steps
@@ -20,10 +23,9 @@ from verify.engines.running import chain_runs
 from verify.engines.writers import data, table, write
 from verify.errors import InputError
 from verify.formatting import with_unit
-from verify.problem.beam import Beam
 from verify.report.result import Column, Result, Table
 from verify.settings import DEFAULT, wall_label
-from verify.validation import check_integer, check_number
+from verify.validation import check_integer, check_number, check_type
 
 COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
@@ -57,15 +59,35 @@ def engine_chain(
     .urdf, _exudyn.py, _pinocchio.py, .json, .csv. `data` has joints (N m/rad, N m s), links (m, kg, kg m^2) and
     frequencies (Hz). Raises InputError, also where no chain runs at the step.
     """
+    beam = named(beam).beam
+    make = partial(describe, beam, wall=wall, in_space=in_space)
+    wanted: dict[str, Any] = {"mode": mode, "error": error, "damping": damping, "step": step, "engine": engine}
+    return made_chain(make, len(beam.pieces), count, path=path, **wanted)
+
+
+def made_chain(
+    make: Callable[[int], RigidChain],
+    least: int,
+    count: int | None,
+    *,
+    mode: int,
+    error: float,
+    damping: float | str,
+    step: float | None,
+    engine: str,
+    path: str | Path | None,
+) -> Result:
+    """The result of `engine_chain` of chains that `make` makes by their number of links, `least` or more."""
     check_integer("mode", mode, 1, 100)
     check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
-    beam, request, end = named(beam).beam, asked(damping), str(path or ".xml").lower()
+    check_type("engine", engine, str)
+    check_type("path", path or "", str, Path)
+    request, end = asked(damping), str(path or ".xml").lower()
     own = end.endswith((".xml", ".mjcf"))
     engine = engine or "MuJoCo" * (own and path is not None)
-    make = partial(describe, beam, wall=wall, in_space=in_space)
-    names, highest = end.endswith((".json", ".csv")), 1 if request.in_hz else int(max(request.at))
+    highest = max(mode, 1 if request.in_hz else int(max(request.at)))
     if step is None:
-        count = count or fewest(beam, max(mode, highest), error, wall, in_space)
+        count = count or fewest(make, least, highest, error)
         steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
         chain = damped(make(count), request, steps, drag=own)
         result = chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
@@ -73,8 +95,9 @@ def engine_chain(
         check_number("step", step, "s", above=0)
         if not engine:
             raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
-        plain = [make(n) for n in ([count] if count else _counts(beam, max(mode, highest), error, wall, in_space))]
-        chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, own, own or names)
+        plain = [make(n) for n in ([count] if count else _counts(make, least, highest, error))]
+        armatures = own or end.endswith((".json", ".csv"))
+        chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, own, armatures)
         result, chain = chain_result(chosen.chain, mode, error), chosen.chain
         links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
         why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
@@ -83,11 +106,11 @@ def engine_chain(
     return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
 
 
-def _counts(beam: Beam, mode: int, error: float, wall: str, in_space: bool) -> list[int]:
+def _counts(make: Callable[[int], RigidChain], least: int, mode: int, error: float) -> list[int]:
     """Numbers of links from one below the fewest up to those that leave a quarter of the error, of order 4."""
-    least = fewest(beam, mode, error, wall, in_space)
-    most = min(int(4.0**0.25 * least) + 2, least + MOST_TRIED)
-    return [*range(max(least - 1, len(beam.pieces), mode + 1, 2), most + 1)]
+    found = fewest(make, least, mode, error)
+    most = min(int(4.0**0.25 * found) + 2, found + MOST_TRIED)
+    return [*range(max(found - 1, least, mode + 1, 2), most + 1)]
 
 
 def steps_of(engine: str, step: float, damped: bool) -> list[Steps]:
@@ -138,7 +161,11 @@ def _for_step(
         errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
         text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
     remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
-    remedies = [f"mode {number}"] * bool(number) + remedies + ["hinges in one plane"] * first.chain.in_space
+    remedies = (
+        [f"mode {number}"] * bool(number)
+        + remedies
+        + ["hinges in one plane"] * (first.chain.in_space and first.chain.straight)
+    )
     raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
 
 
@@ -158,16 +185,17 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
         limit = one.limit if isfinite(one.limit) else None
         shown = [value if isfinite(value) and one.stable else None for value in figures]
         each.append((one.links, one.chain.steps.integrator, one.beta or None, limit, *shown, fate))
-    note = f"Errors of frequency and damping ratio at mode {mode} in bending; small vibration about rest."
+    axis = chosen.chain.motions[0]
+    note = f"Errors of frequency and damping ratio at mode {mode} in {axis}; small vibration about rest."
     return Table("Links for the step", columns, each, [note])
 
 
-def fewest(beam: Beam, mode: int, error: float, wall: str = DEFAULT.wall, in_space: bool = False) -> int:
-    """The smallest number of links that is within the error at all modes up to one, and so is the next one tried."""
-    count, first = max(len(beam.pieces), mode + 1, 2), 0
+def fewest(make: Callable[[int], RigidChain], least: int, mode: int, error: float) -> int:
+    """The smallest number of links, `least` or more, within the error at all modes up to one, and so the next tried."""
+    count, first = max(least, mode + 1, 2), 0
     while count <= MOST_LINKS:
-        tried = describe(beam, count, wall=wall, in_space=in_space)
-        errors = [tried.errors(axis, mode) for axis in tried.axes]
+        tried = make(count)
+        errors = [tried.errors(axis, mode) for axis in tried.motions]
         worst = max(float(abs(one).max()) if len(one) >= mode else 1.0 for one in errors)
         if worst <= error and first:
             return first
@@ -182,6 +210,8 @@ def chain_result(chain: RigidChain, mode: int, error: float) -> Result:
     held, n = "clamped" in chain.beam.supports, chain.count
     walls = [name for name in COMPARED if held and chain.straight and name != chain.wall]
     others = {f"wall {wall}": describe(chain.beam, n, wall=wall, in_space=chain.in_space) for wall in walls}
+    if isinstance(chain, CurvedChain) and chain.rod.bent:
+        others["mass on chords"] = chain.on_chords
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
     rows, margins = list[tuple[object, ...]](), list[Margin]()

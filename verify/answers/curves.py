@@ -1,22 +1,20 @@
 """The joints of a rod along a curve as a chain of rigid bodies."""
 
 from collections.abc import Sequence
-from dataclasses import replace
-from math import inf
+from math import ceil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from verify.answers.chains import chain_result, steps_of
+from verify.answers.chains import made_chain
 from verify.blas import one_blas_thread
-from verify.engines.choice import default_steps
-from verify.engines.curved import curved_chain
-from verify.engines.damping import asked, damped
-from verify.engines.description import MOST_LINKS, RigidChain
+from verify.engines.curved import CurvedChain, curved_chain
+from verify.engines.description import MOST_LINKS
 from verify.engines.rod import read_rod
-from verify.engines.writers import write
+from verify.errors import InputError
 from verify.report.result import Result
-from verify.validation import check_integer, check_number
+from verify.validation import check_integer, check_type
 
 
 @one_blas_thread()
@@ -30,25 +28,27 @@ def curve_chain(
     overrides: Sequence[str] = (),
     in_space: bool = False,
     damping: float | str = 0.0,
+    step: float | None = None,
     engine: str = "",
     path: str | Path | None = None,
 ) -> Result:
     """Joints and links of a rod along a curve, clamped at its first point and free at its last.
 
     `curve`, `section`, `overrides`, `in_space`: as of `engines.rod.read_rod`. `count`: links of one arc length; by
-    default links run from point to point. Else as of `engine_chain`; errors are against the rod as finer links estimate
-    it. Raises InputError.
+    default links run from point to point, and for a `step` they are the fewest that run. Else as of `engine_chain`;
+    errors are against the rod as finer links estimate it. Raises InputError.
     """
-    check_integer("mode", mode, 1, 100)
-    check_number("error", error, "relative, of a frequency", at_least=1e-12, below=1)
-    rod, request, own = read_rod(Path(curve), overrides, section, in_space), asked(damping), str(path or "").lower()
-    points = np.unique(rod.s)
-    number = len(points) - 1 if count is None else count
-    check_integer("count", number, 2, MOST_LINKS // (1 + 3 * rod.in_space))  # matrices are dense
-    chain: RigidChain = curved_chain(rod, points if count is None else np.linspace(0.0, points[-1], number + 1))
-    engine = engine or "MuJoCo" * own.endswith((".xml", ".mjcf"))
-    steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
-    chain = damped(chain, request, steps)
-    chain = default_steps(chain, steps, mode, error) if steps else chain
-    result = chain_result(chain, mode, error)
-    return result if path is None else replace(result, data=dict(result.data) | {"wrote": write(chain, Path(path))})
+    check_type("curve", curve, str, Path)
+    rod = read_rod(Path(curve), overrides, section, in_space)
+    points, most = np.unique(rod.s), MOST_LINKS // (1 + 3 * rod.in_space)  # matrices are dense
+
+    def divided(number: int) -> CurvedChain:
+        check_integer("count", number, 2, most)
+        return curved_chain(rod, np.linspace(0.0, points[-1], number + 1))
+
+    wanted: dict[str, Any] = {"mode": mode, "error": error, "damping": damping, "step": step, "engine": engine}
+    if count is not None or step is not None:
+        return made_chain(divided, ceil(rod.turning), count, path=path, **wanted)
+    if not 2 < len(points) <= most + 1:
+        raise InputError(f"curve: links from point to point are {len(points) - 1}, of 2 to {most}, give count")
+    return made_chain(lambda _: curved_chain(rod, points), 2, len(points) - 1, path=path, **wanted)

@@ -25,11 +25,11 @@ from verify.chain.system import build_system
 from verify.errors import InputError, shown
 from verify.exact.torsion import shafts
 from verify.formatting import one_line
-from verify.linear.positions import Numbers, as_vector
+from verify.linear.positions import Numbers, as_vector, real_array
 from verify.problem.beam import Beam, in_plane
 from verify.problem.cross_section import Section
 from verify.settings import DEFAULT, Wall
-from verify.validation import check_integer
+from verify.validation import check_integer, check_type
 
 SMALL = 0.1  # rad, below which c is its series: the first term left out is 2e-16 of c phi^2
 LEAST = 1e-6  # step over the share of the load that is reached at which the path of equilibria is given up
@@ -127,6 +127,7 @@ def bend_in_space(
     The load grows from zero along the path of equilibria, which without a moment are stable. Raises InputError for
     supports other than clamped and free, bodies on the beam, and where that path ends.
     """
+    check_type("beam", beam, Beam)
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend_in_space takes a cantilever, ('clamped', 'free')")
     check_integer("count", count, 2)
@@ -178,8 +179,8 @@ def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers
     if stiffness is None:
         planes = [_bar(beam, *shafts(beam)[:, :2].tolist()), beam, in_plane(beam, "width")]
     else:
-        given = _vector("stiffness", stiffness)
-        if beam.section or not (given > 0.0).all():
+        given = as_vector("stiffness", stiffness)
+        if beam.section or given.shape != (3,) or not ((given > 0.0) & np.isfinite(given)).all():
             raise InputError(f"stiffness = {shown(stiffness)}: give GJ and two EI above zero, N m^2, of a uniform beam")
         planes = [_bar(beam, (beam.length, one)) for one in given.tolist()]
     system, *others = (build_system(plane, count, wall=wall) for plane in planes)
@@ -209,9 +210,8 @@ def _at_rest(nodes: Array, curvature: Curvature) -> tuple[Array, Array, Array]:
     n, steps = len(nodes) - 1, np.diff(nodes) / STEPS
     starts = (nodes[:-1, None] + steps[:, None] * np.arange(STEPS)).ravel()
     h = np.repeat(steps, STEPS)[:, None]
-    first, second = (
-        np.asarray(curvature(starts + (0.5 + side * 3**-0.5) * h[:, 0]), dtype=float) for side in (-0.5, 0.5)
-    )
+    gauss = (starts + (0.5 + side * 3**-0.5) * h[:, 0] for side in (-0.5, 0.5))
+    first, second = (real_array("curvature", curvature(s) if callable(curvature) else curvature, "1/m") for s in gauss)
     if any(one.shape != (n * STEPS, 3) or not np.isfinite(one).all() for one in (first, second)):
         raise InputError("curvature: give a function of arc lengths (n,), m, that returns finite numbers (n, 3), 1/m")
     turns = 0.5 * h * (first + second) + 3**0.5 / 12.0 * h**2 * np.cross(first, second)

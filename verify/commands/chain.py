@@ -38,11 +38,20 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
 @click.command(cls=BeamCommand)
 @scene_argument
 @overrides_option
-@click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error at --mode.")
+@click.option(
+    "--count",
+    type=int,
+    metavar="N",
+    help="Links. Default: the fewest within --error at --mode; of a curve from point to point.",
+)
 @click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
 @click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
 @click.option(
-    "--wall", default=DEFAULT.wall, show_default=True, metavar="RULE", help=f"Joints at a clamped end: {RULES}."
+    "--wall",
+    default=DEFAULT.wall,
+    show_default=True,
+    metavar="RULE",
+    help=f"Joints at a clamped end of a straight beam: {RULES}.",
 )
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--section", default="", metavar="PHRASE", help="Of a curve: 'round 2 mm E=1GPa rho=1.2g/cm3'.")
@@ -75,28 +84,22 @@ def chain(
     `--step 1ms --engine MuJoCo --damping "1% at 2" --mode 1` for a time step and a damping ratio.
 
     SCENE may be a curve, curve.csv: points in columns x, y and z, with EI, EI2, GJ, rho_A or a section in columns, one
-    value for all by --set EI=0.02, or --section (see docs/engines.md).
+    value for all by --set EI=0.02, or --section (see docs/engines.md). It is clamped at the first point, free at the
+    last. Without --count its links run from point to point, with --step they are the fewest that run.
     """
-    limit, brief = relative_error(error), not any(formats.values())
-    shared: dict[str, Any] = {"mode": mode, "error": limit, "in_space": in_space, "damping": damping, "path": path}
-    if curved := scene.lower().endswith(".csv"):
-        if time_step or wall != DEFAULT.wall:
-            raise InputError("--step and --wall are not of a curve, leave them out")
-        result = curve_chain(scene, count, section=section, overrides=overrides, engine=engine, **shared)
+    brief, shared = not any(formats.values()), dict[str, Any](mode=mode, error=relative_error(error), in_space=in_space)
+    shared |= {"damping": damping, "engine": engine, "path": path}
+    shared |= {"step": None if time_step is None else typed(time_step, Seconds, "step")}
+    if scene.lower().endswith(".csv"):
+        if wall != DEFAULT.wall:
+            raise InputError(
+                "--wall is of a straight beam, leave it out: a curve has the best one that its links allow"
+            )
+        result = curve_chain(scene, count, section=section, overrides=overrides, **shared)
     elif section:
         raise InputError("--section is of a curve, curve.csv, leave it out")
-    result = (
-        result
-        if curved
-        else engine_chain(
-            load_beam(scene, overrides),
-            count,
-            wall=wall,
-            step=None if time_step is None else typed(time_step, Seconds, "step"),
-            engine=engine,
-            **shared,
-        )
-    )
+    else:
+        result = engine_chain(load_beam(scene, overrides), count, wall=wall, **shared)
     if brief:
         result = replace(result, tables=[_shortened(result.tables[0]), *result.tables[1:]])
     show(result, **formats)

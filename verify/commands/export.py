@@ -1,5 +1,6 @@
 """`verify export`: files for other programs, pictures and movies."""
 
+from functools import partial
 from pathlib import Path
 
 import click
@@ -48,7 +49,8 @@ def export(
     """
     if path.lower().endswith((*CHAINS, ".py")):
         beam = load_beam(scene, overrides).beam
-        described = describe(beam, count or fewest(beam, mode or 3, 0.01))
+        make = partial(describe, beam)
+        described = make(count or fewest(make, len(beam.pieces), mode or 3, 0.01))
         return click.echo(printable(write_chain(described, Path(path))))
     parts = PARTS.get(what, set()) | {what} if what else None
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples)

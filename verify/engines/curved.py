@@ -9,7 +9,7 @@ Bodies carry the rest pose, so that all springs are at rest at zero angles, what
 spring.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -95,6 +95,14 @@ class CurvedChain(RigidChain):
         arms = np.cross(about, self.bodies[1][:, None] - at).transpose(0, 2, 1)
         return np.asarray(arms * moved[:, None]), np.asarray(moved)
 
+    @property
+    def on_chords(self) -> "CurvedChain":
+        """The chain with centres of mass on its chords, order 2, as of straight links from joint to joint."""
+        masses, centres, inertias = self.bodies
+        starts, ways = self.places[:-1], self.frames[:, :, 0]
+        centres = starts + np.einsum("ni,ni->n", centres - starts, ways)[:, None] * ways
+        return replace(self, bodies=(masses, centres, inertias))
+
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
         """Frequencies of the rod, estimated from links in two and in four parts, (n_modes,), Hz."""
         return rod_hz(self.rod, self.nodes, n_modes)
@@ -131,6 +139,7 @@ def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
 def _parts(rod: Rod, nodes: Array) -> str:
     """What the links are, and the order of their errors."""
     why = "order 2 by a step of EI" if len(rod.jumps) else "order 4 where EI and mass are smooth"
+    why += ", in twist order 2" * (rod.in_space and not len(rod.jumps))
     why = "order 2 by unequal lengths" if np.ptp(h := np.diff(nodes)) > ALIKE * h[0] else why
     return f"pieces of the curve of {with_unit(float(nodes[-1]), 'm')}, joints and ends on it, {why}"
 

@@ -81,7 +81,7 @@ def damped(chain: RigidChain, request: Asked, steps: Steps | None, *, drag: bool
     ratio, times, scheme = request.ratios[0], dict[Axis, float](), scheme_of(*steps[1:]) if steps else None
     if not ratio:
         return chain
-    drag &= bool(steps and steps.integrator in DRAGGED) and not chain.in_space
+    drag &= bool(steps and steps.integrator in DRAGGED) and chain.straight and not chain.in_space
     if request.compensated and not (steps and isfinite(steps.step)):
         raise InputError("damping: it is compensated for a time step, give step and engine")
     first, fits, factor, remarks = 0.0, dict[Axis, Rayleigh](), dict[Axis, float](), list(chain.remarks)

@@ -21,9 +21,9 @@ from verify.errors import InputError, near_name, raise_all, shown
 from verify.exact.torsion import shafts
 from verify.files import read_text
 from verify.problem.beam import Beam, in_plane
-from verify.problem.cross_section import SIZES
+from verify.problem.cross_section import ALL_SIZES
 from verify.problem.phrase import beam_table
-from verify.validation import in_si
+from verify.validation import as_tuple, in_si
 
 UNITS = {"x": "m", "y": "m", "z": "m", "EI": "N m^2", "EI2": "N m^2", "GJ": "N m^2", "rho_A": "kg/m", "rho_Ip": "kg m",
          "roll": "deg", "width": "m", "thickness": "m", "diameter": "m", "wall_thickness": "m", "E": "Pa",
@@ -32,6 +32,13 @@ UNITS = {"x": "m", "y": "m", "z": "m", "EI": "N m^2", "EI2": "N m^2", "GJ": "N m
 MATERIAL = {"E": "youngs_modulus", "rho": "density", "nu": "poissons_ratio"}
 VALUES = ("EI", "EI2", "GJ", "rho_A", "rho_Ip", "roll", "width", "thickness")
 """Columns of `Rod.values`."""
+POWERS = np.array([(1, 3, 0), (3, 1, 0), (3, 3, -2), (1, 1, 0), (1, 1, 2), *[(0, 0, 0)] * 3])
+"""Of width, thickness and diagonal in them: exact but for GJ, Saint-Venant's A^4/40I, of which the ratio varies little.
+"""
+HEAD = re.compile(r"\s*(\w+)\s*(?:[\[(](.*)[\])])?\s*")
+HUGE, MEET = 1e50, 1e-4
+"""Limit of values; distance of the ends over the length up to which a curve is closed."""
+CLAMPED = "clamped at its first point, free at its last"
 LARGEST = 10_000_000
 """Bytes of a table, as of a scene with long lists."""
 GAUSS = np.polynomial.legendre.leggauss(8)
@@ -51,8 +58,8 @@ class Rod:
     in_space: bool
     start: Array
     """`u` at the start but for its part along the tangent, (3,)."""
-    powers: tuple[float, ...] = (1.0,) * len(VALUES)
-    """Of values by the sizes that are linear between points."""
+    sized: tuple[str, ...] = ()
+    """Names of values that are of a section, whose sizes are linear between points."""
 
     @cached_property
     def _spline(self) -> tuple[Array, Callable[..., Array]]:
@@ -68,14 +75,28 @@ class Rod:
         """Whether the curve is no straight line."""
         return bool(np.linalg.norm(self.points[-1] - self.points[0]) < (1.0 - STRAIGHT) * self.s[-1])
 
+    @property
+    def turning(self) -> float:
+        """Angles between the tangents at the points together, rad."""
+        tangents = self._spline[1](np.unique(self.s), 1)
+        tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+        return float(np.arccos(np.clip((tangents[1:] * tangents[:-1]).sum(axis=1), -1.0, 1.0)).sum())
+
     def place(self, s: Array) -> Array:
         """Points at arc lengths, m, (n, 3)."""
         return np.asarray(self._spline[1](s))
 
     def at(self, s: Array) -> Array:
         """`values` at arc lengths, (n, 8)."""
-        each = zip(self.values.T, self.powers, strict=True)
-        return np.stack([np.interp(s, self.s, one ** (1.0 / p)) ** p for one, p in each], axis=1)
+        powers = POWERS * np.isin(VALUES, self.sized)[:, None]
+
+        def section(sizes: Array) -> Array:
+            sides = np.column_stack([sizes, np.hypot(*sizes.T)])
+            return np.asarray((sides[:, None] ** powers).prod(axis=2))
+
+        rest = self.values / section(self.values[:, 6:])
+        values = np.stack([np.interp(s, self.s, one) for one in rest.T], axis=1)
+        return np.asarray(values * section(values[:, 6:]))
 
     def frames(self, s: Array) -> Array:
         """Frames (tangent, `u` x tangent, `u`) at ascending arc lengths from 0, (n, 3, 3).
@@ -131,75 +152,84 @@ def read_rod(path: Path, overrides: Sequence[str] = (), section: str = "", in_sp
     `overrides`: 'key=value' of what is one value for all. `section`: 'round 2 mm E=1GPa rho=1.2g/cm3', as of a beam.
     `in_space`: a table of x and y as one with z = 0. Raises InputError.
     """
-    lines = [line for line in read_text(path, "curve", LARGEST).splitlines() if line.strip() and line[0] != "#"]
-    rows = list(csv.reader(lines, delimiter=";" if ";" in (lines or [""])[0] else ","))
-    heads = [re.fullmatch(r"\s*(\w+)\s*(?:[\[(](.*)[\])])?\s*", word) for word in (rows or [[]])[0]]
-    names = [head[1] if head else "" for head in heads]
-    raise_all(
-        [f"{path.name}: {shown(one)} is no column: {near_name(one, tuple(UNITS))}" for one in names if one not in UNITS]
-    )
-    if not {"x", "y"} <= {*names} or len({*names}) < len(names) or len(rows) < 3:
-        raise InputError(f"{path.name}: give two points or more in columns x, y and, in space, z, each with one header")
-    units = [(head[1], head[2] or "") for head in heads if head]
-    scales = [in_si(f"1 {unit}", UNITS[name], name) if unit not in ("", UNITS[name]) else 1.0 for name, unit in units]
-    table = dict[str, Array]()
-    for i, (name, scale) in enumerate(zip(names, scales, strict=True)):
-        try:
-            table[name] = np.array([float(row[i]) * scale for row in rows[1:]])
-        except (ValueError, IndexError):
-            table[name] = np.array([np.nan])
-        if not np.isfinite(table[name]).all():
-            raise InputError(f"{path.name}: column {name} has a cell that is no finite number, give one in each row")
-    fixed = dict[str, float]()
-    for word in overrides:
+    table, fixed = _table(path), dict[str, float]()
+    count, space = len(table["x"]), in_space or "z" in table
+    for word in as_tuple("overrides", overrides, str):
         name, _, text = (part.strip() for part in word.partition("="))
-        if name not in UNITS or name in table:
-            text = "is a column of the table" if name in table else near_name(name, tuple(UNITS))
+        if name not in UNITS or name in {*table, "z"}:
+            text = near_name(name, tuple(UNITS)[3:]) if name not in UNITS else f"{name} belongs to the table"
             raise InputError(f"--set {shown(word)}: {text}")
         fixed[name] = in_si(text, UNITS[name], name)
+    if "," in str(section):
+        raise InputError(f"section = {shown(section)}: give size and material alone, a curve is {CLAMPED}")
     own = beam_table(f"1 m x {section}, clamped-free") | {"supports": ("clamped", "free")} if section else {}
-    space = in_space or "z" in table
-    count = len(rows) - 1
-    every = [fixed | {name: float(column[i]) for name, column in table.items()} for i in range(count)]
-    values = np.array([_values(tuple(sorted(row.items())), tuple(own.items()), space, path.name) for row in every])
+    rows = [fixed | {name: float(column[i]) for name, column in table.items()} for i in range(count)]
+    each = [_values(tuple(sorted(row.items())), tuple(own.items()), space, path.name) for row in rows]
     points = np.stack([table.get(name, np.zeros(count)) for name in "xyz"], axis=1)
-    first = points[np.linalg.norm(points - points[0], axis=1) > 0.0][:1] - points[0]
-    if not len(first):
-        raise InputError(f"{path.name}: its points are one place, give a curve")
-    tangent = first[0] / np.linalg.norm(first[0])
+    values = np.array([one for one, _ in each])
+    if not (abs(np.hstack([points, values])) < HUGE).all():
+        raise InputError(f"{path.name}: a value is not below {HUGE:g}, check its unit")
+    steps, ahead = np.diff(points, axis=0), points - points[0]
+    if not np.linalg.norm(ahead[-1]) > MEET * np.linalg.norm(steps, axis=1).sum():
+        raise InputError(f"{path.name}: its ends meet, give an open curve, {CLAMPED}")
+    tangent = ahead[np.linalg.norm(ahead, axis=1) > 0.0][0]
+    tangent /= np.linalg.norm(tangent)
     start = np.array([-tangent[1], tangent[0], 0.0]) if "z" not in table else np.eye(3)[2]
-    # EI = E b h^3/12 and rho A by two sizes, of a round section both; GJ of a flat one, the polar inertia as EI2
-    b, h = (int(not {name, "diameter"}.isdisjoint(table)) for name in ("width", "thickness"))
-    each = zip(VALUES, (b + 3 * h, 3 * b + h, b + 3 * h, b + h, 3 * b + h, 1, 1, 1), strict=True)
-    powers = tuple(1.0 if name in table else max(power, 1.0) for name, power in each)
     start = np.eye(3)[0] if abs(tangent @ start) > ALONG_Z else start
-    return Rod(points, values, space, start, powers)
+    return Rod(points, values, space, start, each[0][1])
+
+
+def _table(path: Path) -> dict[str, Array]:
+    """The columns, SI but for angles. Raises InputError."""
+    lines = [line for line in read_text(path, "curve", LARGEST).splitlines() if line.strip() and line[0] != "#"]
+    rows = list(csv.reader(lines, delimiter=";" if ";" in (lines or [""])[0] else ","))
+    heads = [HEAD.fullmatch(word) for word in (rows or [[]])[0]]
+    names = [head[1] if head else word.strip() for head, word in zip(heads, (rows or [[]])[0], strict=True)]
+    texts = [f"{shown(one)} is no column: {near_name(one, tuple(UNITS))}" for one in names if one not in UNITS]
+    texts += [f"column {one} is there {names.count(one)} times, leave one" for one in UNITS if names.count(one) > 1]
+    if not {"x", "y"} <= {*names} and not (texts and {*names} & UNITS.keys()):
+        texts = ["name its columns x, y and, in space, z in a header, such as x [mm],y [mm],EI,rho_A"]
+    texts += [f"it has {len(rows) - 1} points, give two or more"] * (not texts and len(rows) < 3)
+    for i, row in enumerate(rows[1:], start=1):
+        texts += [f"row {i} has {len(row)} cells, its header {len(names)}"] * (not texts and len(row) != len(names))
+    raise_all([f"{path.name}: {text}" for text in texts])
+    table = dict[str, Array]()
+    for name, head, cells in zip(names, heads, zip(*rows[1:], strict=True), strict=True):
+        unit = head[2] if head and head[2] not in (None, UNITS[name]) else ""
+        table[name] = np.array(
+            [in_si(f"{one} {unit}", UNITS[name], f"{path.name}, row {i}: {name}") for i, one in enumerate(cells, 1)]
+        )
+    return table
 
 
 @lru_cache(maxsize=4096)
 def _values(
     row: tuple[tuple[str, float], ...], section: tuple[tuple[str, Any], ...], space: bool, name: str
-) -> list[float]:
-    """VALUES of a point by its columns: directly, or from sizes and material. Raises InputError."""
-    given = dict(row)
-    sizes = {size for group in SIZES.values() for size in group}
-    fields = dict(section) | {MATERIAL.get(key, key): value for key, value in row if key in sizes or key in MATERIAL}
+) -> tuple[list[float], tuple[str, ...]]:
+    """VALUES of a point by its columns: directly, or from sizes and material; the names of the latter. InputError."""
+    given, made, sized = dict(row), dict[str, float](), tuple[str, ...]()
+    fields = dict(section) | {
+        MATERIAL.get(key, key): value for key, value in row if key in ALL_SIZES or key in MATERIAL
+    }
     if {"diameter", "wall_thickness"} & set(fields):
         fields["shape"] = "tube" if "wall_thickness" in fields else "round"
-    made = dict[str, float]()
-    if fields and not {"EI", "rho_A"} <= set(given):
+    needed = ("EI", "GJ", "rho_A", "rho_Ip") if space else ("EI", "rho_A")
+    if fields and not set(needed) <= set(given):
         beam = Beam(**{"length": 1.0} | fields)
         made = {"EI": beam.bending_stiffness, "rho_A": beam.mass_per_length}
         if space:
             _, made["GJ"], made["rho_Ip"] = shafts(beam)[0].tolist()
             made["EI2"] = in_plane(beam, "width").bending_stiffness
+        sized = tuple(made.keys() - given)
+    elif unused := MATERIAL.keys() & given:
+        raise InputError(f"{name}: {min(unused)} has no effect next to {', '.join(needed)}, leave it out")
     made |= {key: fields[key] for key in ("width", "thickness", "diameter") if key in fields} | given
     made.setdefault("EI2", made.get("EI", 0.0))
-    for key in VALUES[:5] if space else ("EI", "rho_A"):
+    for key in (*needed, "EI2"):
         if not made.get(key, 0.0) > 0.0:
+            fault = "is not above 0" if key in made else "is missing"
             remedy = "polar inertia per length, kg m, " if key == "rho_Ip" else ""
-            text = f"{key} is missing or not positive, give {remedy}as a column or by --set {key}=..., or a section"
-            raise InputError(f"{name}: {text}")
+            raise InputError(f"{name}: {key} {fault}, give {remedy}a column or --set {key}=..., or a section")
     thick = made.get("diameter", 0.0)
     drawn = made.get("width", thick), made.get("thickness", thick)
-    return [*(made.get(key, 1.0) for key in VALUES[:5]), np.radians(made.get("roll", 0.0)), *drawn]
+    return [*(made.get(key, 1.0) for key in VALUES[:5]), np.radians(made.get("roll", 0.0)), *drawn], sized
