@@ -82,6 +82,9 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
             break
         odd.append(first + worst)
         law[first + worst] = expected[worst]
+    if len(values) - first <= 2 * RUN:
+        text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
+        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or the beam that they mean as a scene")
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
     raise InputError(f"{text}: give the beam that they mean as a scene")
