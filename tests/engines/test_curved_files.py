@@ -255,6 +255,27 @@ def test_steps_of_mass_and_stiffness_lie_inside_a_link_or_at_a_joint(n, tmp_path
         assert (bending["faults"], bending["odd"], found["passed"]) == ([], [], True)
 
 
+@pytest.mark.parametrize("law", ["stepped", "smooth"])
+@pytest.mark.parametrize("joint", [1, 2, 7])
+def test_a_joint_off_a_law_that_varies_has_the_stiffness_by_it(joint, law, tmp_path):
+    """At the wall it is on the rule of the others; two joints behind it are too few for a piece of their own."""
+    angle = np.append(np.linspace(0.0, 0.75, 20), np.linspace(0.75, 1.5, 20))
+    ei = 2.0 - 0.9 * angle if law == "smooth" else np.where(np.arange(40) < 20, 2.0, 0.5)
+    csv = table(tmp_path / "arc.csv", x=0.3 * np.sin(angle), y=0.3 * (1 - np.cos(angle)), EI=ei, rho_A=0.7)
+    curve_chain(csv, 20, path=tmp_path / "right.xml")
+    text, name = (tmp_path / "right.xml").read_text(), f"joint{joint}_bending"
+    right = float(re.search(rf'{name}"[^>]* stiffness="([^"]*)"', text)[1])
+    result = judged(
+        tmp_path / "wrong.xml", edited(text, STIFFNESS, times(1.8), name, 1), corrected=tmp_path / "out.xml"
+    )
+    (found,) = result.data["chains"]
+    assert (found["odd"], result.data["passed"]) == ([name], False)
+    (remedy,) = {one.remedy for one in result.margins if name in one.remedy}
+    assert float(re.search(f"{name} to (\\S+)", remedy)[1]) == pytest.approx(right, rel=5e-3)
+    assert 0.01 < abs(found["error"]).max() < 0.06
+    assert not (tmp_path / "out.xml").exists()
+
+
 def test_few_links_show_no_law(tmp_path):
     with pytest.raises(InputError, match=r"too few to tell a law of it from a fault: give 10 links or more$"):
         judged(tmp_path / "few.xml", ring([K, K, 2 * K], lengths=(L,) * 3))

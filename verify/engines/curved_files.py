@@ -67,11 +67,10 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     try:
         for line, values in zip(lines, means, strict=True):
             rule, law = at_wall(values, line.joints, "clamped", lengths)
-            known = WEIGHTS.get(rule, ())[: law.kind == "smooth" and len(values)]
-            law.joints[: len(known)] = values[: len(known)] * known  # nearer than by extrapolation
-            near = abs(
-                values * np.append(WEIGHTS.get(rule, ()), np.ones(len(values)))[: len(values)] / law.joints - 1.0
-            )
+            known = values * np.append(WEIGHTS.get(rule, ()), np.ones(len(values)))[: len(values)]
+            near = abs(known / law.joints - 1.0)
+            nearer = [j for j in range(len(WEIGHTS.get(rule, ()))) if law.kind == "smooth" and j not in law.odd]
+            law.joints[nearer] = known[nearer]  # than by extrapolation
             odd = [j for j in law.odd if near[j] > ESTIMATE * line.curve.bent]
             laws, rules = [*laws, law._replace(odd=odd)], [*rules, rule]
     except InputError as error:
