@@ -5,12 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from tests.engines.test_chain_files import mujoco_hz
-from tests.engines.test_curves import helix
+from tests.engines.test_chain_files import PHRASE, mujoco_hz
+from tests.engines.test_curves import helix, table
 from tests.reference.curved_rods import frequencies
 from tests.reference.curved_rods import helix as ring_axes
 from verify import Beam
 from verify.answers.curves import curve_chain
+from verify.cli import status_of
 from verify.engines.judgement import judge_file
 from verify.errors import InputError
 from verify.settings import wall_label
@@ -162,3 +163,168 @@ def test_chords_are_right_below_the_limit_and_their_centres_are_the_remedy_above
         assert not any("centres of mass" in one.remedy for one in pieces.margins)
     assert np.log2(errors["chords", 12] / errors["chords", 24]) == pytest.approx(2.0, abs=0.2)
     assert abs(errors["pieces", 24]) < 0.03 * abs(errors["chords", 24])
+
+
+def edited(chain, find, change, lone="", count=0):
+    """MJCF with `change` of the groups of `find`, in all bodies or from the name of a `lone` joint on."""
+    at = chain.index(f'name="{lone}"') if lone else 0
+    return chain[:at] + re.sub(find, change, chain[at:], count=count)
+
+
+def times(factor):
+    return lambda found: f"{found[1]}{' '.join(repr(factor * float(one)) for one in found[2].split())}{found[3]}"
+
+
+INERTIA, STIFFNESS, MASS = (rf'({name}=")([^"]*)(")' for name in ("diaginertia", "stiffness", "mass"))
+AXIS, SHIFT = r'(name="joint7_torsion" type="hinge" axis=")[^"]*(")', r'(<inertial pos=")(\S+)( [^"]*")'
+FAULTS = {  # find, change, joint before it, bodies; what is named, largest relative error
+    "inertia": (INERTIA, times(10.0), "joint7_torsion", 1, "inertia of the link of joint7_bending (10 times)", 1e-3),
+    "inertias": (INERTIA, times(10.0), "", 0, "inertia 0.833 m l^2 in place of m l^2/12", 0.1),
+    "mass": (MASS, times(1.2), "joint7_torsion", 1, "mass of the link of joint7_bending (1.2 times)", 0.02),
+    "far joint": (SHIFT, times(2.0), "", 0, "centre of mass at 0.997 l in place of l/2", 0.1),
+    "width": (STIFFNESS, times(2.0), "joint7_width", 1, "joint7_width (2 times)", 0.02),
+    "axis": (AXIS, r"\g<1>0.9962 0.0872 0\2", "", 1, "hinge off the axes of the rod: joint7_torsion", 0.01),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_one_planted_fault_is_named_with_its_joint_and_nothing_else_is(fault, tmp_path):
+    find, change, lone, count, named, largest = FAULTS[fault]
+    path, _ = helix(tmp_path / "helix.csv", points=240)
+    curve_chain(path, 20, path=tmp_path / "right.xml")
+    text = edited((tmp_path / "right.xml").read_text(), find, change, lone, count)
+    out = tmp_path / "out.xml"
+    result = judged(tmp_path / "wrong.xml", text, corrected=out, within=1e-4)
+    found = result.data["chains"][0]
+    (only,) = found["faults"]
+    assert named in only
+    assert not result.data["passed"]
+    assert 1e-4 < abs(found["error"]).max() < largest
+    assert found["frequencies_hz"] == pytest.approx(mujoco_hz(tmp_path / "wrong.xml")[:3], rel=1e-6)
+    if fault == "width":
+        right = float(re.search(r'joint7_width"[^>]* stiffness="([^"]*)"', (tmp_path / "right.xml").read_text())[1])
+        assert f"joint7_width to {right:.4g}"[:-1] in " ".join(one.remedy for one in result.margins)
+    assert not out.exists() or mujoco_hz(out)[:3] == pytest.approx(found["frequencies_hz"], rel=1e-9)
+
+
+@pytest.mark.parametrize("fault", ["lost", "all lost", "spring"])
+@pytest.mark.parametrize("space", [True, False])
+def test_a_lost_rest_angle_shows_at_centres_of_mass_or_hinges(fault, space, tmp_path):
+    """The file runs at the frequencies of another curve, and errors against that one are small."""
+    angle = np.linspace(0.0, 1.6, 90)
+    csv = table(tmp_path / "arc.csv", x=0.3 * np.sin(angle), y=0.3 * (1 - np.cos(angle)), EI=2.0, EI2=3.0, GJ=1.5,
+                rho_A=0.7, rho_Ip=1e-5)  # fmt: skip
+    curve_chain(csv, 40, in_space=space, path=tmp_path / "right.xml")
+    text = (tmp_path / "right.xml").read_text()
+    assert judge_file(tmp_path / "right.xml", None, 3, within=1e-3).data["passed"]
+    quat = r' quat="[^"]*"'
+    if fault == "spring":
+        text = re.sub(r'(name="joint9_bending"[^>]*)/>', r'\1 springref="0.15"/>', text)
+    else:
+        text = re.sub(quat if fault == "all lost" else f'(name="link9"[^>]*?){quat}', r"\1" * (fault == "lost"), text)
+    result = judged(tmp_path / "wrong.xml", text, corrected=tmp_path / "out.xml")
+    assert not result.data["passed"]
+    assert (
+        "the angles of the curve" in result.margins[0].remedy or "the angles of the curve" in result.margins[1].remedy
+    )
+    assert ("joint9_bending" in " ".join(one.failure for one in result.margins)) == (fault != "all lost")
+    assert any("springref" in one for one in result.warnings) == (fault == "spring")
+    assert not (tmp_path / "out.xml").exists()
+
+
+def test_free_hinges_and_those_off_a_plane_are_named(tmp_path):
+    path, _ = helix(tmp_path / "helix.csv")
+    curve_chain(path, 20, path=tmp_path / "helix.xml")
+    free = re.sub(r'(_torsion"[^>]*stiffness=")[^"]*"', r'\g<1>0"', (tmp_path / "helix.xml").read_text())
+    with pytest.raises(InputError, match="'joint0_torsion' and all others like it have no stiffness"):
+        judged(tmp_path / "free.xml", free)
+    with pytest.raises(InputError, match=r"the hinge of 'j5' is 5\.7 degrees off the normal"):
+        judged(tmp_path / "off.xml", re.sub('(name="j5" axis=")0 0 1', r"\g<1>0.1 0 1", ring([K] * N)))
+
+
+@pytest.mark.parametrize("n", [13, 20])
+def test_steps_of_mass_and_stiffness_lie_inside_a_link_or_at_a_joint(n, tmp_path):
+    """The reference is that of the chain's own table: with 13 links the step is in the middle of one."""
+    angle = np.append(np.linspace(0.0, 0.75, 20), np.linspace(0.75, 1.5, 20))
+    tip = np.arange(40) >= 20
+    for drop in (0.003, 0.5):
+        csv = table(tmp_path / "step.csv", x=0.3 * np.sin(angle), y=0.3 * (1 - np.cos(angle)),
+                    EI=np.where(tip, 0.8, 2.0), rho_A=np.where(tip, 0.7 * (1 - drop), 0.7))  # fmt: skip
+        made = curve_chain(csv, n, error=0.1, path=tmp_path / "step.xml").data["expected"]["bending"]
+        found = judge_file(tmp_path / "step.xml", None, 3, within=0.01).data
+        (bending,) = found["chains"]
+        assert bending["exact_hz"] == pytest.approx(made["frequencies_hz"] / (1 + made["error"]), rel=1e-4)
+        assert (bending["faults"], bending["odd"], found["passed"]) == ([], [], True)
+
+
+@pytest.mark.parametrize("law", ["stepped", "smooth"])
+@pytest.mark.parametrize("joint", [1, 2, 7])
+def test_a_joint_off_a_law_that_varies_has_the_stiffness_by_it(joint, law, tmp_path):
+    """At the wall it is on the rule of the others; two joints behind it are too few for a piece of their own."""
+    angle = np.append(np.linspace(0.0, 0.75, 20), np.linspace(0.75, 1.5, 20))
+    ei = 2.0 - 0.9 * angle if law == "smooth" else np.where(np.arange(40) < 20, 2.0, 0.5)
+    csv = table(tmp_path / "arc.csv", x=0.3 * np.sin(angle), y=0.3 * (1 - np.cos(angle)), EI=ei, rho_A=0.7)
+    curve_chain(csv, 20, path=tmp_path / "right.xml")
+    text, name = (tmp_path / "right.xml").read_text(), f"joint{joint}_bending"
+    right = float(re.search(rf'{name}"[^>]* stiffness="([^"]*)"', text)[1])
+    result = judged(
+        tmp_path / "wrong.xml", edited(text, STIFFNESS, times(1.8), name, 1), corrected=tmp_path / "out.xml"
+    )
+    (found,) = result.data["chains"]
+    assert (found["odd"], result.data["passed"]) == ([name], False)
+    (remedy,) = {one.remedy for one in result.margins if name in one.remedy}
+    assert float(re.search(f"{name} to (\\S+)", remedy)[1]) == pytest.approx(right, rel=5e-3)
+    assert 0.01 < abs(found["error"]).max() < 0.06
+    assert not (tmp_path / "out.xml").exists()
+
+
+def test_few_links_show_no_law(tmp_path):
+    with pytest.raises(InputError, match=r"too few to tell a law of it from a fault: give 10 links or more$"):
+        judged(tmp_path / "few.xml", ring([K, K, 2 * K], lengths=(L,) * 3))
+
+
+def test_a_verdict_counts_the_mode_that_is_farthest_off(tmp_path):
+    """Of centres of mass on the chords of an arc that is mode 1, as in the exit status."""
+    angle = np.linspace(0.0, 1.6, 90)
+    csv = table(tmp_path / "arc.csv", x=0.3 * np.sin(angle), y=0.3 * (1 - np.cos(angle)), EI=2.0, rho_A=0.7)
+    curve_chain(csv, 20, path=tmp_path / "arc.xml")
+    text = re.sub(r'(<inertial pos="\S+) [^"]*"', r'\1 0 0"', (tmp_path / "arc.xml").read_text())
+    result = judged(tmp_path / "chords.xml", text, within=3e-4)
+    errors = abs(result.data["chains"][0]["error"])
+    assert errors[0] > 1.5 * errors[2]
+    assert max(one.size for one in result.margins if "links" in one.name) == pytest.approx(errors[0], rel=1e-9)
+
+
+def test_flags_and_equalities_are_those_of_the_run(tmp_path):
+    text = (
+        ring([K] * N)
+        .replace("<worldbody>", '<worldbody><body name="b"/>', 1)
+        .replace("<option", '<option timestep="1e-5"', 0)
+    )
+    for flag in ("spring", "gravity"):
+        changed = text.replace(
+            'gravity="0 0 0" timestep="1e-5"/>', f'timestep="1e-5"><flag {flag}="disable"/></option>'
+        )
+        if flag == "spring":
+            with pytest.raises(InputError, match="no hinge has a stiffness"):
+                judged(tmp_path / "flag.xml", changed)
+        else:
+            assert not any(one.name == "gravity" for one in judged(tmp_path / "flag.xml", changed).margins)
+    path, _ = helix(tmp_path / "helix.csv")
+    curve_chain(path, 12, path=tmp_path / "helix.xml")
+    loop = '<equality><connect body1="link9" body2="link3" anchor="0 0 0"/>'
+    with pytest.raises(InputError, match="'joint4_bending' has an equality"):
+        judged(tmp_path / "loop.xml", (tmp_path / "helix.xml").read_text().replace("<equality>", loop))
+
+
+@pytest.mark.parametrize("name", ["arc.json", "arc_exudyn.py", "arc.urdf.json"])
+def test_what_chain_writes_and_compare_does_not_read_has_one_sentence(name, tmp_path, capsys):
+    csv = table(tmp_path / "arc.csv", x=np.sin(np.linspace(0, 1, 9)), y=np.cos(np.linspace(0, 1, 9)), EI=2.0, rho_A=0.7)
+    curve_chain(csv, 8, error=0.3, path=tmp_path / name.replace(".urdf.json", ".urdf"))
+    assert status_of(["compare", str(tmp_path / name)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert ".xml" in said.replace(str(tmp_path), "")
+    assert ("run it" in said) == name.endswith(".py")
+    (tmp_path / "list.json").write_text("[6.366, 39.946, 111.985]")
+    assert status_of(["compare", "--beam", PHRASE, str(tmp_path / "list.json"), "--count", "20"]) == 1

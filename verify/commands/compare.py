@@ -10,6 +10,7 @@ from verify.answers.frequencies import KINDS, compare_frequencies
 from verify.commands import shared
 from verify.compare.reading import UNITS, read_shapes, read_words, solve_model
 from verify.errors import InputError
+from verify.files import read_text
 from verify.scene.file import load_beam
 from verify.settings import THEORIES
 from verify.validation import Relative, typed, unit
@@ -78,6 +79,7 @@ def compare(
 
     Example: `verify compare steel-cantilever 27.6 172.6 482.6 944.7 1559.7 --within 1%`
     """
+    _refuse_data([scene, *words])
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
@@ -117,6 +119,17 @@ def compare(
     shared.show(result, **formats)
     if not result.data["passed"]:
         raise SystemExit(shared.GATE_FAILED)
+
+
+def _refuse_data(words: list[str]) -> None:
+    """Raise InputError for files that `verify chain` writes and this command does not read."""
+    for name in (word for word in words if word.lower().endswith((".json", ".py"))):
+        remedy = "compare the .xml, .sdf or .urdf of this chain, by `verify chain ... --to FILE`"
+        if name.lower().endswith(".py"):
+            remedy = "run it and compare the frequencies that it prints, or the .xml, .sdf or .urdf of this chain"
+        elif not Path(name).is_file() or '"links"' not in read_text(Path(name), "file"):
+            continue  # a list of frequencies
+        raise InputError(f"{name}: chains are read from .xml (MJCF), .sdf and .urdf: {remedy}")
 
 
 def _steady(

@@ -12,9 +12,9 @@ import numpy as np
 
 from verify.analysis.plausibility import unit_margins
 from verify.analysis.verdict import FINE, Margin, per_cent
-from verify.engines.curved_files import judge_rod, needs_rod, weight
+from verify.engines.curved_files import judge_rod, lost_angles, needs_rod, weight
 from verify.engines.line import Line, lines
-from verify.engines.reading import Solid, read
+from verify.engines.reading import DRAG, Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, clamped, elastic_clamp, half_links, judge
 from verify.engines.running import in_space_only, judge_runs, setting_of, under_gravity
 from verify.engines.section_axes import contradictions, planes
@@ -83,7 +83,9 @@ def judge_file(
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = judge_rod(every, path.name) if rod else _judged(found, every[len(found) :], beam, theory)
-    setting = setting._replace(note="the drag of its medium is left out") if rod and setting.viscosity else setting
+    setting = (
+        setting._replace(note="; ".join(filter(None, [DRAG, setting.note]))) if rod and setting.viscosity else setting
+    )
     lone = every[len(judged) :]
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
@@ -98,7 +100,7 @@ def judge_file(
     notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts."] * rod
     tables = [Table("Frequencies", columns, rows, notes), *ran.tables, *map(_joints, judged)]
     warnings = [text for one in judged for text in one.advice]
-    clashes, changes = contradictions(found, axes, beam), _changes(judged)
+    clashes, changes = [*contradictions(found, axes, beam), *lost_angles(every)], _changes(judged)
     for text, size, remedy in clashes:
         words: dict[str, Any] = {"name": text, "remedy": remedy, "failure": f"{text}: {per_cent(size)}"}
         others.append(Margin(size=size, fine=within, limit=within, harm="premise", **words))
@@ -166,13 +168,14 @@ def _assess(one: Judged, modes: int, within: float) -> tuple[Any, list[Margin], 
         failure = f"{text}: {per_cent(size)} {where}"
         margins.append(Margin(name=text, size=size, where=where, remedy=remedy, failure=failure, **limits))
     if (changes and not worse) or not text:
-        size, where = float(abs(after[-1])), f"at mode {m} in {axis}"
+        worst = int(abs(after).argmax())
+        size, where = float(abs(after[worst])), f"at mode {worst + 1} in {axis}"
         what = f"{n} links with correct joints" + f", but {'; '.join(one.links)}" * bool(one.links)
         margins.append(Margin(name=what, size=size, where=where, remedy=cause, **limits))
     own = one.present.beam
     about: dict[str, Any] = {"axis": axis, "links": n, "rule": one.rule, "faults": one.faults, "length": own.length}
     about |= {"stiffness": one.stiffness, "mass_per_length": own.mass_per_length, "supports": own.supports}
-    about |= {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after, "odd": one.odd}
+    about |= {"frequencies_hz": hertz, "exact_hz": exact, "error": errors, "corrected_error": after, "odd": [*one.odd]}
     return rows, margins, worse, about
 
 
@@ -188,17 +191,21 @@ def _cause(one: Judged) -> str:
         return "give the links the mass of the beam, m l^2/12 about l/2"
     if one.odd:
         text = " or give a scene that has it" * (not one.line.curve.bent)
-        return f"set joint {', '.join(one.odd[:MANY])}{text}"
+        return f"set joint {', '.join(f'{name} to {k:.6g} N m/rad' for name, k in [*one.odd.items()][:MANY])}{text}"
     return one.remedy
 
 
 def _hints(solids: list[Solid], judged: list[Judged], beam: Beam | None, untwisted: list[Line]) -> list[str]:
-    """What the frequencies leave out: ball joints, torsion; the modulus that EI means for round links."""
+    """What the frequencies leave out: ball joints, torsion, free hinges; the modulus that EI means for round links."""
     hints = list[str]()
     if any(one.line.ball for one in judged):
         hints.append("a ball joint is read as three hinges of one stiffness, that of bending; torsion is not judged")
     elif untwisted:
         hints.append("torsion is not judged: joints and inertias are of no uniform shaft, give a scene with sections")
+    sprung = {joint for one in [*(each.line for each in judged), *untwisted] for joint in one.joints}
+    free = [move.joint for one in solids for move in one.moves if not (move.stiffness or move.joint in sprung)]
+    if free:
+        hints.append(f"joint {shown(free[0])}{f' and {len(free) - 1} more' * (len(free) > 1)} turns freely: not judged")
     radius = float(np.median([one.radius for one in solids if one.moves and one.radius] or 0.0))
     if beam is None and radius > 0.0:
         modulus = judged[0].stiffness / (0.25 * pi * radius**4) / 1e9
@@ -253,5 +260,5 @@ def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], ou
         data = data[:start] + word.encode() + data[end:]
     with whole(out, "corrected") as part:
         part.write_bytes(data)
-    what = ["other stiffnesses"] * bool(new or not step) + [f"the time step {with_unit(step, 's')}"] * bool(step)
-    return f"wrote {shown(str(out))}: {' and '.join(what)}, nothing else"
+    what = ["other stiffnesses"] * bool(new) + [f"the time step {with_unit(step, 's')}"] * bool(step)
+    return f"wrote {shown(str(out))}: " + (f"{' and '.join(what)}, nothing else" if what else "nothing is to change")

@@ -147,6 +147,11 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     for axis, about in zip(AXES, turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ e) > 0.8] for e, (moves, _) in zip(about, parts, strict=True)]
         if not any(move.stiffness for moves in own for move in moves):
+            if curved and any(own):  # free about this axis, all axes vibrate together
+                joint = next(moves[0].joint for moves in own if moves)
+                raise InputError(
+                    f"{name}: joint {shown(joint)} and all others like it have no stiffness, give them one"
+                )
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) > 1 or (axis != "torsion" and not (moves and moves[0].stiffness)):
@@ -181,8 +186,13 @@ def _axes(parts: list[tuple[list[Move], list[Solid]]], ways: Array, name: str, c
         across = across - (across @ t) * t
         across = across / np.linalg.norm(across)
         found.append(np.stack([across, np.cross(t, across), t]))
-    if not found or any(max(abs(found[j] @ one.axis)) < 1.0 - (BOW if curved else STRAIGHT) for j, one in hinges):
-        raise InputError(f"{name}: its hinges are not about or across its own axis, at right angles, turn them")
+    near = [abs(found[j] @ one.axis).max() if found else abs(before[j] @ one.axis) for j, one in hinges]
+    if not found or min(near) < 1.0 - (BOW if curved else STRAIGHT):
+        joint, angle = hinges[int(np.argmin(near))][1].joint, np.degrees(np.arccos(min(near)))
+        text = (
+            f"its hinges are not about or across its own axis, at right angles ({shown(joint)} by {angle:.2g} degrees)"
+        )
+        raise InputError(f"{name}: {text}, turn them, or give the bodies the angles of a curve")
     return list(np.array(found).transpose(1, 0, 2))
 
 

@@ -20,6 +20,7 @@ ROUND, BOX = (3, 5), 6
 """Types of geoms of MuJoCo: capsule, cylinder; box."""
 SPIN = 1e-6
 """Negative principal inertia over the largest one that rounding of a file's digits explains."""
+DRAG = "the drag of its medium is left out"
 LIMITS = ("lower", "-"), ("upper", "")
 """Ends of the range of a joint and the sign of their defaults."""
 
@@ -129,12 +130,17 @@ def _compiled(path: Path, root: ElementTree.Element) -> Any:
                 name = one.get("name") or next(above.get("name", "") for above in root.iter() if one in [*above])
                 raise InputError(f"{one.tag} {shown(name)}: {key} = {shown(value)}, give finite numbers")
     try:
-        return mujoco.MjModel.from_xml_path(str(path.resolve()))
+        model = mujoco.MjModel.from_xml_path(str(path.resolve()))
     except ValueError as error:
         text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML ").removeprefix("Error: ")
         if root.find(".//composite") is not None:
             text = "composite, which MuJoCo 4 lacks: write its bodies and joints out by mj_saveLastXML of MuJoCo 3"
         raise InputError(f"MuJoCo does not compile it, {text}") from None
+    bits = mujoco.mjtDisableBit
+    off = {bits.mjDSBL_SPRING: model.jnt_stiffness, bits.mjDSBL_DAMPER: model.dof_damping}
+    for bit, values in (off | {bits.mjDSBL_GRAVITY: model.opt.gravity}).items():
+        values[:] *= not model.opt.disableflags & bit
+    return model
 
 
 def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array, Setting]:
@@ -153,7 +159,7 @@ def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array, Se
     bound = {int(dof): "has a dashpot that is not linear" for dof in np.flatnonzero(dashpots[:, 1:].any(axis=1))}
     kinds = ("has an equality", *["has dry friction"] * 2, *["is at a limit"] * 2, *["has a contact"] * 9)
     for kind, row in zip(data.efc_type, np.reshape(data.efc_J, (-1, model.nv)), strict=False):
-        bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(row)}
+        bound |= {int(dof): kinds[kind] for dof in np.flatnonzero(abs(row) > 1e-9)}  # else rounding within a loop
     for i, at in enumerate(model.tendon_adr):
         acts, joints = model.tendon_stiffness[i], model.wrap_objid[at : at + model.tendon_num[i]]
         acts = np.any(acts) or np.any(model.tendon_damping[i])
@@ -193,8 +199,18 @@ def _mjcf(path: Path, root: ElementTree.Element) -> tuple[list[Solid], Array, Se
     alike = np.ptp(model.body_inertia, axis=1).max() < 1e-9 * model.body_inertia.max() and not model.opt.density
     viscosity = float(model.opt.viscosity) if alike and not rule.lower().startswith("euler") else 0.0
     lost = model.opt.density or model.opt.viscosity > viscosity
-    note = "the drag of its medium is left out" if lost else ""
-    return solids, np.array(model.opt.gravity), Setting("MuJoCo", rule, float(model.opt.timestep), note, viscosity)
+    notes = [*[DRAG] * bool(lost), *_turned(model)]
+    setting = Setting("MuJoCo", rule, float(model.opt.timestep), "; ".join(notes), viscosity)
+    return solids, np.array(model.opt.gravity), setting
+
+
+def _turned(model: Any) -> list[str]:
+    """What to know of a chain that is drawn elsewhere than where its springs are at rest, or nothing."""
+    turned = abs(model.qpos_spring - model.qpos0)[model.jnt_qposadr]
+    at, count = int(turned.argmax()), int(np.sum(turned > 1e-9))
+    name = f"{shown(model.joint(at).name or f'joint #{at}')}{f' and {count - 1} more' * (count > 1)}"
+    text = f"springref or ref turns {name} by up to {np.degrees(turned[at]):.3g} degrees from the drawing"
+    return [f"judged where its springs are at rest: {text}"] * bool(count)
 
 
 def _value(one: ElementTree.Element | None, path: str) -> str:
@@ -325,6 +341,7 @@ def _moves(
         low, high = (_numbers(joint, f"{within}limit/{end}", f"{sign}1e16")[0] for end, sign in LIMITS)
         at_limit, rubs = low >= 0.0 or high <= 0.0, _numbers(joint, f"{within}dynamics/friction", "0")[0]
         bound = bound or "is at a limit" * (kind != "continuous" and at_limit) or "has dry friction" * bool(rubs)
+        bound = bound or "follows another by mimic" * (joint.find(".//mimic") is not None)
         bound = bound or f"has a spring at rest at {reference:.4g} rad" * bool(stiffness and reference)
         damping = _numbers(joint, f"{within}dynamics/damping", "0")[0]
         yield Move(name + " axis2" * (axis == "axis2"), at[:3, 3], about / size, stiffness, bound, damping)

@@ -28,6 +28,8 @@ ADAPTED = "first link fixed, adapted joints, at the wall"
 SERIES = "fixed link in series with its joint at the wall"
 """All of a first link that is fixed is in its joint, as with half a link at the wall and EI/l behind: order 2."""
 IRREGULAR = "irregular joints at the wall"
+WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not rule.first and all(rule.weights)}
+"""Weights at a wall by the rule in words."""
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
@@ -39,8 +41,8 @@ class Judged(NamedTuple):
     """A chain as it is and with correct joints, whose axis is "bending" in either plane, or "torsion".
 
     `stiffness`: EI at the wall, N m^2. `springs`: correct ones, N m/rad. `faults`: of joints and links; `links`: those
-    of links. `advice`: what else to know of the joints. `odd`: names of joints off the law of the others.
-    `means`: EI or GJ in words. `remedy`: what is better than more links.
+    of links. `advice`: what else to know of the joints. `odd`: joints off the law of the others, the stiffness by
+    it. `means`: EI or GJ in words. `remedy`: what is better than more links.
     """
 
     line: Line
@@ -52,7 +54,7 @@ class Judged(NamedTuple):
     faults: list[str]
     links: list[str]
     advice: list[str]
-    odd: list[str]
+    odd: dict[str, float]
     means: str
     remedy: str = "give more links"
 
@@ -93,7 +95,8 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
-    names = [line.joints[j] for j in (*law.odd, *steps) if meant is None]
+    right_ones = inside / np.append(WEIGHTS.get(rule, ()), np.ones(n))[:n]
+    names = {line.joints[j]: float(right_ones[j]) for j in (*law.odd, *steps) if meant is None}
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
     return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, written(stiffness))

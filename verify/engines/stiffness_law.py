@@ -56,7 +56,14 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
     if len(runs) > 1 and len(lone) <= few + len(runs) - 1:
         done = np.searchsorted([b for _, b in runs], np.arange(n), side="right")
         before, ahead = levels[np.maximum(done - 1, 0)], levels[np.minimum(done, len(runs) - 1)]
-        series = [j for j in lone if min(before[j], ahead[j]) < values[j] < max(before[j], ahead[j])]
+        for (_, b), (c, _), level in zip(
+            runs, runs[1:], levels, strict=False
+        ):  # up to the last joint of the run before
+            alike = [j for j in range(b, c) if abs(values[j] / level - 1.0) <= ALIKE]
+            ahead[b : alike[-1] + 1 if alike else b] = level
+        lone = [j for j in lone if abs(values[j] / ahead[j] - 1.0) > ALIKE]
+        low, high = np.minimum(before, ahead), np.maximum(before, ahead)
+        series = [j for j in lone if low[j] < values[j] < high[j]]
         joints = np.where(np.isin(range(n), series), values, ahead)
         return Law("stepped", joints, ahead, [j for j in lone if j not in series])
     return _smooth(values, first, few, names)
@@ -82,6 +89,9 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
             break
         odd.append(first + worst)
         law[first + worst] = expected[worst]
+    if len(values) - first <= 2 * RUN:
+        text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
+        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or the beam that they mean as a scene")
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
     raise InputError(f"{text}: give the beam that they mean as a scene")
