@@ -28,9 +28,10 @@ UNEVEN = 0.01
 """Relative difference of mass per length from which a link differs."""
 JUMP = 3.0
 """Difference between two links, over that of their neighbours, from which it is a step."""
-TILT, SHARE = 5e-3, 0.1
-"""Angle of hinges off the axes of a joint, rad and over the rest angle, from which they are named: an error of its
-square and EI/GJ. Axes by the joints alone are uncertain by a part of the rest angle, those of one link off by half."""
+TILT, SHARE, JUMPED = 5e-3, 0.1, 0.25
+"""Angle of hinges off the axes of a joint, rad, and over the rest angle and its change from joint to joint, from which
+they are named: an error of its square and EI/GJ. Axes by the joints alone are uncertain by a part of the rest angle, at
+a jump of the curvature by what a spline overshoots; those of one link are off by half the rest angle."""
 HEAVY = 1.5
 """Mass per length over that of both neighbours from which a link carries a body."""
 ESTIMATE = 0.02
@@ -191,10 +192,12 @@ def _tilted(lines: list[Line], meant: CurvedChain) -> list[str]:
     columns: dict[str, int] = {"bending": 1, "width": 2, "torsion": 0}
     rest = np.array([meant.rest_angle(j) for j in range(meant.count)])
     rest[:1] = rest[1:2]
+    jumps = np.pad(abs(np.diff(rest)), 2)  # beside each joint and one farther
+    unknown = SHARE * rest + JUMPED * np.max([jumps[k : k + len(rest)] for k in range(4)], axis=0)
     named, worst, count = list[str](), 0.0, 0
     for line in lines:
         off = np.linalg.norm(np.cross(line.curve.hinges, meant.axes_at[:, :, columns[line.axis]]), axis=1)
-        odd = np.flatnonzero(off > np.maximum(TILT, SHARE * rest))
+        odd = np.flatnonzero(off > np.maximum(TILT, unknown))
         named += [f"{line.joints[j] or 'the wall'} ({np.degrees(off[j]):.2g} degrees)" for j in odd]
         worst, count = max(worst, *off[odd], 0.0), max(count, len(odd))
     if count > meant.count // 2:
