@@ -201,6 +201,7 @@ xml # stiffness="[^"]* # stiffness="nan # joint0_bending
 xml # stiffness="[^"]* # stiffness="inf # joint0_bending
 xml # axis="[^"]* # axis="0 1 # axis
 xml # <body # <body><composite type="cable"/></body><body # composite
+xml # <worldbody # <extension><plugin plugin="mujoco.elasticity.cable"/></extension><worldbody # EI/l
 sdf # <iyy>[^<]* # <iyy>nan # link0
 sdf # <mass>[^<]* # <mass>-1 # link0
 sdf # <link name="link3" # <link # link 4

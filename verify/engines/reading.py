@@ -135,6 +135,8 @@ def _compiled(path: Path, root: ElementTree.Element) -> Any:
         text = one_line(", ".join(str(error).split("\n"))).rstrip(", ").removeprefix("XML ").removeprefix("Error: ")
         if root.find(".//composite") is not None:
             text = "composite, which MuJoCo 4 lacks: write its bodies and joints out by mj_saveLastXML of MuJoCo 3"
+        elif "mujoco.elasticity" in text:
+            text = "the plugin of cables, which MuJoCo 4 lacks: give joints with stiffness EI/l and GJ/l in its place"
         raise InputError(f"MuJoCo does not compile it, {text}") from None
     bits = mujoco.mjtDisableBit
     off = {bits.mjDSBL_SPRING: model.jnt_stiffness, bits.mjDSBL_DAMPER: model.dof_damping}
