@@ -100,11 +100,13 @@ def cases():
         sheet = load(name)
         rows = [
             (f"`{x.name}`", x.meaning, f"{x.exact:.10g} {x.unit}", f"{x.within:g}", x.order or "", x.source)
-            for x in sheet.figure
+            for x in sheet.figures
         ]
         files = ", ".join(engines(name)) or "none: the sheet says what to build"
         yield f"({name})=\n## {name}\n\n{sheet.title}. Columns: {', '.join(sheet.columns)}. Files for: {files}.\n"
         yield "\n".join(f"{word}: {' '.join(getattr(sheet, word.lower()).split())}\n" for word in ("Build", "Record"))
+        if sheet.blind:
+            yield f"The record cannot tell {sheet.blind}.\n"
         yield table(("figure", "meaning", "exact", "passes within", "order", "source"), rows)
 
 
