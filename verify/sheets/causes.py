@@ -36,6 +36,8 @@ CLOSE = 0.05
 FARTHEST, MOST, SURER = 1.7, 3, 0.3
 """Largest logarithm of a figure over its exact value that powers explain; most explanations that are listed; difference
 of a chain with any number of links, over that of a parameter, below which it is the cause."""
+ABSENT = 1e-9
+"""Of a figure over its exact value, without the parameter that it is proportional to."""
 MODULUS, GRAVITY = "youngs_modulus_Pa", "gravity_m_per_s2"
 CLAMP = "clamp"
 """Parameter of every clamped sheet that is 0 in it: compliance of the clamp over L/EI."""
@@ -132,7 +134,7 @@ def elastic(
     known = [one for one in figures if one.powers and one.name in values]
     if not any(one in off for one in known):
         return ""
-    if any(values[one.name] == 0.0 != one.exact and GRAVITY in one.powers for one in known):
+    if any(abs(values[one.name]) < ABSENT * abs(one.exact) and GRAVITY in one.powers for one in known):
         return f"there is no gravity: give {sheet.parameters[GRAVITY]:g} m/s^2, in the direction of the sheet"
     errors = np.array([one.logarithm(values[one.name]) for one in known])
     if abs(errors).max() > FARTHEST:  # powers are of small changes

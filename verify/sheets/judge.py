@@ -77,7 +77,7 @@ def judge_case(
     whys = [known.get(one.figure.name, "") if one.share > 1.0 else "" for one in runs[-1]]
     unread = {one.lost: one for one in reversed(runs[-1]) if one.lost}.values()  # one sentence of a mode's two figures
     judged = [(one, why) for one, why in zip(runs[-1], whys, strict=True) if not one.lost or one in unread]
-    margins = [_margin(one, why) for one, why in judged]
+    margins = [_margin(one, why, leads=whys.count(why) == 1) for one, why in judged]
     large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
     falling = [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
     margins += falling
@@ -138,8 +138,11 @@ def _read(sheet: Sheet, figure: Figure, run: Run) -> Read:
     return Read(figure, found, figure.error(found))
 
 
-def _margin(one: Read, why: str) -> Margin:
-    """The error of a figure, as a fraction of what passes where it is not relative."""
+def _margin(one: Read, why: str, *, leads: bool) -> Margin:
+    """The error of a figure, as a fraction of what passes where it is not relative.
+
+    `leads`: whether the cause is that of no other figure; a wrong start then explains the rest.
+    """
     cause, _, remedy = why.partition(": ")
     if one.lost:
         text = one.lost.partition(": ")[2] or one.lost
@@ -157,7 +160,7 @@ def _margin(one: Read, why: str) -> Margin:
         is_error=relative,
         failure=failure,
         remedy=remedy,
-        harm="model form" if why else "discretisation",
+        harm="premise" if why and leads and figure.read == "first" else "model form" if why else "discretisation",
     )
 
 
