@@ -98,14 +98,16 @@ def cases():
     yield CASES
     for name in names():
         sheet = load(name)
-        exact = [f"{x.exact:.10g} {x.unit}".removesuffix(" 1") for x in sheet.figure]
+        exact = [f"{x.exact:.10g} {x.unit}".removesuffix(" 1") for x in sheet.figures]
         rows = [
             (f"`{x.name}`", x.meaning, value, f"{x.within:g}", x.order or "", x.source)
-            for x, value in zip(sheet.figure, exact, strict=True)
+            for x, value in zip(sheet.figures, exact, strict=True)
         ]
         files = ", ".join(engines(name)) or "none: the sheet says what to build"
         yield f"({name})=\n## {name}\n\n{sheet.title}. Columns: {', '.join(sheet.columns)}. Files for: {files}.\n"
         yield "\n".join(f"{word}: {' '.join(getattr(sheet, word.lower()).split())}\n" for word in ("Build", "Record"))
+        if sheet.blind:
+            yield f"The record cannot tell {sheet.blind}.\n"
         yield table(("figure", "meaning", "exact", "passes within", "order", "source"), rows)
 
 

@@ -17,7 +17,7 @@ LENGTH, WIDTH, THICKNESS, YOUNG, DENSITY = 0.3, 0.025, 0.003, 206e9, 7850.0
 STIFFNESS, LINE = YOUNG * WIDTH * THICKNESS**3 / 12.0, DENSITY * WIDTH * THICKNESS  # N m^2, kg/m
 COUNT, FORCE, ZETA = 12, 0.12, 0.002  # -, N, of mode 1
 OMEGA = 1.8751040687119611**2 / LENGTH**2 * np.sqrt(STIFFNESS / LINE)
-PERIOD, ROWS = 0.00025, 601  # s between samples
+PERIOD, ROWS = 0.0005, 1001  # s between samples
 
 
 def cantilever(step, integrator="Euler", first_fixed=False, points=False):
@@ -70,7 +70,7 @@ RINGS = {
     "ring-down": (cantilever(2.5e-5), False),
     "first-link-fixed": (cantilever(2.5e-5, first_fixed=True), False),
     "point-masses": (cantilever(2.5e-5, points=True), False),
-    "implicit-euler": (cantilever(PERIOD, "discrete"), False),
+    "implicit-euler": (cantilever(2.5e-4, "discrete"), False),
     "lagged-springs": (cantilever(1e-5), True),
 }
 RUNS = {

@@ -26,7 +26,7 @@ def cases(name: str | None, folder: str | None, engine: str | None, count: int |
     if name is None:
         if folder or engine:
             raise click.UsageError("Name a case: verify cases ring-down --to FOLDER.")
-        rows = [(one, load(one).title, len(load(one).figure), ", ".join(engines(one)) or "sheet") for one in names()]
+        rows = [(one, load(one).title, len(load(one).figures), ", ".join(engines(one)) or "sheet") for one in names()]
         columns = [Column("case"), Column("title"), Column("figures"), Column("files for")]
         return show(Result(tables=[Table("", columns, rows)]), **formats)
     if folder is None:
@@ -49,12 +49,15 @@ def told(name: str) -> Result:
     sheet = load(name)
     rows = [
         (one.name, one.meaning, one.exact, one.unit or "1", one.within, one.order or None, one.source)
-        for one in sheet.figure
+        for one in sheet.figures
     ]
     columns = [Column("figure"), Column("meaning"), Column("exact", "", ".10g"), Column("unit")]
     columns += [Column("passes within", "", ".3g"), Column("order, at least"), Column("source")]
-    given = Table("Parameters, SI", [Column("name"), Column("value", "", ".10g")], [*sheet.parameters.items()])
+    heads = [Column("name"), Column("value", "", ".10g"), Column("least error that fails", percent=True, format=".2g")]
+    parameters = [(name, value, sheet.resolution(name)) for name, value in sheet.parameters.items()]
+    given = Table("Parameters, SI", heads, parameters)
     notes = [f"Build: {' '.join(sheet.build.split())}", f"Record: {' '.join(sheet.record.split())}"]
+    notes += [f"The record cannot tell {sheet.blind}."] * bool(sheet.blind)
     notes.append(
         f"Columns: {', '.join(sheet.columns)}. Files for: {', '.join(engines(name)) or 'none, the sheet alone'}."
     )

@@ -277,5 +277,7 @@ def _modes(fitted: Fit, duration: float, sizes: Array) -> tuple[RingMode, ...]:
         turns, ratio = fitted.estimates[f"d{i}"], fitted.estimates[f"r{i}"]
         hertz, low, high = (edge / (2.0 * pi * duration) for edge in (turns.value, *turns.interval))
         zeta, most, least = (-r / sqrt(1.0 + r * r) for r in (ratio.value, *ratio.interval))
+        if hertz < 0.0:  # the conjugate pole
+            hertz, low, high, zeta, most, least = -hertz, -high, -low, -zeta, -least, -most
         modes.append(RingMode(hertz, (low, high), zeta, (least, most), tuple(size)))
     return tuple(sorted(modes, key=lambda mode: mode.hz))

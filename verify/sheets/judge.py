@@ -6,11 +6,14 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
+from msgspec.structs import replace
+
 from verify.analysis.verdict import Margin, void
 from verify.blas import one_blas_thread
 from verify.errors import InputError
 from verify.report.result import Column, Result, Table
-from verify.sheets.causes import cause
+from verify.sheets.causes import causes
+from verify.sheets.faults import PEAK, noise_of
 from verify.sheets.reading import Run, value
 from verify.sheets.sheet import Figure, Sheet, load
 from verify.validation import check_integer
@@ -35,9 +38,8 @@ class Read(NamedTuple):
 
     @property
     def share(self) -> float:
-        """Of the largest error that passes, less what is uncertain in the exact value."""
-        slack = self.figure.uncertainty / (abs(self.figure.exact) or 1.0)
-        return inf if self.lost else max(abs(self.error) - slack, 0.0) / self.figure.within
+        """Of the largest error that passes."""
+        return inf if self.lost else self.figure.share(self.value)
 
     @property
     def grade(self) -> str:
@@ -63,28 +65,32 @@ def judge_case(
         raise InputError(f"counts = {list(counts)}: give one for each of the {len(records)} records")
     for count in counts or ():
         check_integer("counts", count, 1)
-    figures = [one if within is None else _limited(one, within) for one in sheet.figure]
-    read = [Run(sheet, Path(path)) for path in records]
+    figures = [one if within is None or one.read == "first" else _limited(one, within) for one in sheet.figures]
+    sizes: Sequence[int | None] = counts or [None] * len(records)
+    read = [Run(sheet, Path(path), size) for path, size in zip(records, sizes, strict=True)]
     runs = [[_read(sheet, one, run) for one in figures] for run in read]
     orders = _orders(figures, runs, counts) if counts and len(runs) > 1 else {}
     if all(one.lost for one in runs[-1]):
         raise InputError(runs[-1][0].lost)
     last = {one.figure.name: one.value for one in runs[-1] if not one.lost}
-    size = counts[-1] if counts else None
-    whys = [cause(sheet, one.figure, one.value, last, size) if 1.0 < one.share < inf else "" for one in runs[-1]]
+    known = causes(sheet, read[-1], [one.figure for one in runs[-1]], last)
+    whys = [known.get(one.figure.name, "") if one.share > 1.0 else "" for one in runs[-1]]
     unread = {one.lost: one for one in reversed(runs[-1]) if one.lost}.values()  # one sentence of a mode's two figures
     judged = [(one, why) for one, why in zip(runs[-1], whys, strict=True) if not one.lost or one in unread]
-    margins = [_margin(one, why) for one, why in judged]
+    margins = [_margin(one, why, leads=whys.count(why) == 1) for one, why in judged]
     large = [one.figure for one in runs[-1] if one.share > CLASSES["B"] and one.figure.order]  # else others matter
     falling = [_order_margin(one, orders[one.name]) for one in large if one.name in orders]
     margins += falling
+    notes = [*read[-1].notes, *[f"The record cannot tell {sheet.blind}."] * bool(sheet.blind)]
+    heard = {name: noise_of(read[-1], name) for name in read[-1].signals}
+    notes += [f"Noise of {name!r}: {text}." for name, text in heard.items() if text]
     titles = [Path(path).name for path in records]
     titles = titles if counts is None else [f"{name}, N = {n}" for name, n in zip(titles, counts, strict=True)]
     figures_read = [_data(one, why, orders) for one, why in zip(runs[-1], whys, strict=True)]
     passed = all(margin.level != "not trusted" for margin in margins)
     data = {"case": case, "passed": passed, "figures": figures_read}
     data["orders"] = {one.name: one.failure if one.level == "not trusted" else None for one in falling}
-    return Result(sheet.title, _tables(case, titles, runs, orders, read[-1].notes), margins=margins, data=data)
+    return Result(sheet.title, _tables(case, titles, runs, orders, notes), margins=margins, data=data)
 
 
 def _data(one: Read, why: str, orders: Mapping[str, float]) -> dict[str, object]:
@@ -119,8 +125,6 @@ def _tables(
 
 
 def _limited(figure: Figure, within: float) -> Figure:
-    from msgspec.structs import replace
-
     return replace(figure, within=within) if figure.exact else figure
 
 
@@ -129,18 +133,24 @@ def _read(sheet: Sheet, figure: Figure, run: Run) -> Read:
         found = value(sheet, figure, run)
     except InputError as error:
         return Read(figure, nan, nan, str(error))
+    if figure.read == "first":  # noise is not of the start
+        figure = replace(figure, uncertainty=PEAK * run.noise(figure.column))
     return Read(figure, found, figure.error(found))
 
 
-def _margin(one: Read, why: str) -> Margin:
-    """The error of a figure, as a fraction of what passes where it is not relative."""
+def _margin(one: Read, why: str, *, leads: bool) -> Margin:
+    """The error of a figure, as a fraction of what passes where it is not relative.
+
+    `leads`: whether the cause is that of no other figure; a wrong start then explains the rest.
+    """
+    cause, _, remedy = why.partition(": ")
     if one.lost:
-        return void(one.figure.meaning, one.lost.partition(": ")[2] or one.lost)
+        text = one.lost.partition(": ")[2] or one.lost
+        return void(one.figure.meaning, f"{text}: {cause}" if why else text, remedy)
     figure, unit = one.figure, f" {one.figure.unit}".rstrip(" 1")
     failure = f"{figure.meaning} is {one.value:.5g}{unit} for {figure.exact:.5g}{unit}"
     relative = bool(figure.exact)
     size, limit = (abs(one.error), figure.within) if relative else (one.share, 1.0)
-    cause, _, remedy = why.partition(": ")
     failure += f": {cause}" if cause else ""
     return Margin(
         name=figure.meaning,
@@ -150,7 +160,7 @@ def _margin(one: Read, why: str) -> Margin:
         is_error=relative,
         failure=failure,
         remedy=remedy,
-        harm="model form" if why else "discretisation",
+        harm="premise" if why and leads and figure.read == "first" else "model form" if why else "discretisation",
     )
 
 

@@ -1,5 +1,6 @@
 """Sheets of cases: what to build, what to record, exact values with their sources, and values that mistakes give."""
 
+from math import log
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
@@ -13,7 +14,7 @@ from verify.validation import convert
 
 DATA = Path(__file__).with_name("data")
 Reading: TypeAlias = Literal[
-    "frequency", "damping", "last", "mean", "least", "greatest", "rate", "amplitude", "period", "drift"
+    "frequency", "damping", "first", "last", "mean", "least", "greatest", "rate", "amplitude", "period", "drift"
 ]
 """How a figure is read from a column (`reading.READ`)."""
 Positive = Annotated[float, Meta(gt=0)]
@@ -49,11 +50,42 @@ class Figure(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Absolute, of `exact`."""
     order: Annotated[int, Meta(ge=0)] = 0
     """Least order in the number of links, or in 1/step, that a right model has; 0: none is expected."""
+    frictionless: float | None = None
+    """The value without friction, of a figure that is a function of the friction coefficient alone."""
+    friction: Literal["linear", "inverse", "exponential"] = "linear"
+    """What the figure is in the coefficient."""
+    powers: dict[str, float] = {}
+    """Relative change of the figure, absolute of an exact value of 0, over that of a parameter of the sheet."""
     cause: tuple[Cause, ...] = ()
 
     def error(self, value: float) -> float:
         """Signed error: relative, absolute where the exact value is 0."""
         return (value - self.exact) / (abs(self.exact) or 1.0)
+
+    def share(self, value: float) -> float:
+        """The error over the largest that passes, less what is uncertain in the exact value."""
+        return max(abs(self.error(value)) - self.uncertainty / (abs(self.exact) or 1.0), 0.0) / self.within
+
+    def fails(self, value: float) -> bool:
+        """Whether the error is larger than what passes."""
+        return not self.share(value) <= 1.0
+
+    def logarithm(self, value: float) -> float:
+        """Of the value over the exact one, a sum of powers of parameters; the error where the exact value is 0."""
+        ratio = value / self.exact if self.exact else 0.0
+        return log(ratio) if ratio > 0.0 else self.error(value)
+
+
+class Start(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The value of a column at time 0, by which a wrong sign, unit, order or initial condition shows."""
+
+    column: str
+    value: float
+    unit: str
+    within: Positive = 0.01
+    """As of a figure: relative, absolute of a value of 0."""
+    powers: dict[str, float] = {}
+    """As of a figure."""
 
 
 class Chain(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -94,7 +126,44 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     parameters: dict[str, float]
     """Every number of `build`, with its unit at the end of its name."""
     figure: Annotated[tuple[Figure, ...], Meta(min_length=1)]
+    start: tuple[Start, ...] = ()
+    blind: str = ""
+    """Mistakes that pass, as no figure depends on them: 'the record cannot tell ...'."""
     chain: Chain | None = None
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """All figures that are judged: those of the sheet, and the values that the motion starts at."""
+        return *self.figure, *(
+            Figure(
+                name=f"start-{one.column}",
+                meaning=f"start of {one.column}",
+                read="first",
+                column=one.column,
+                exact=one.value,
+                within=one.within,
+                source="what the sheet says to build",
+                unit=one.unit,
+                powers=one.powers,
+            )
+            for one in self.start
+        )
+
+    def resolution(self, parameter: str) -> float | None:
+        """The least relative error of a parameter that fails a run without other errors, None where none fails."""
+        known = [one.within / abs(one.powers[parameter]) for one in self.figures if one.powers.get(parameter)]
+        return min(known, default=None)
+
+    @property
+    def duration_s(self) -> float:
+        """Time of the last row, 0 where the sheet asks for none."""
+        return self.chain.duration_s if self.chain else self.parameters.get("duration_s", 0.0)
+
+    @property
+    def every_s(self) -> float:
+        """Time between rows, 0 where the sheet asks for none."""
+        rate = self.parameters.get("rate_hz", 0.0)
+        return self.chain.every_s if self.chain else 1.0 / rate if rate else 0.0
 
 
 def names() -> tuple[str, ...]:
