@@ -87,14 +87,14 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
     model, both = _model(beams, places, noise), [STIFFNESS, COMPLIANCE]
     fitted, spread = _fit(model, data / noise, both[: len(modes)]), 0.0
     first = fitted.estimates[STIFFNESS]
-    if len(modes) == 1 or not first.sd < WIDE / QUANTILE * first.value:
-        fitted = _fit(model, data / noise, both[:1], {COMPLIANCE: 0.0})
-    else:
+    if len(modes) > 1 and first.sd < WIDE / QUANTILE * first.value:
         values = {name: one.value for name, one in fitted.estimates.items()}
         slopes = _model(beams, places, np.full(len(modes), ROUGH)).predict(values)[1]
         assert slopes
         changes = np.linalg.pinv(np.stack([slopes[name] for name in both], axis=1))[0]
         spread = float(np.linalg.norm(changes)) / first.value
+    if not 0.0 < spread < WIDE:
+        fitted, spread = _fit(model, data / noise, both[:1], {COMPLIANCE: 0.0}), 0.0
     compliance = fitted.estimates.get(COMPLIANCE)
     damping, off = _damping(*np.array([(m.hz, m.zeta, m.halves[1] / QUANTILE) for *_, m in modes]).T), fitted.residuals
     more = tuple(left_out), np.expm1(off * noise), fitted.chi2 is None, spread
