@@ -55,3 +55,16 @@ def test_noise_alone_is_refused(tmp_path):
     path.write_text("t,y\n" + "".join(f"{0.01 * i:.2f},{y:.6f}\n" for i, y in enumerate(values)))
     with pytest.raises(InputError, match="rings"):
         verify.compare_frequencies(STEEL, path)
+
+
+def test_a_mode_of_two_cycles_beside_an_aliased_one_is_left_out(tmp_path):
+    path, hertz = tmp_path / "ring.csv", verify.ExactModel(STEEL).modes(9).frequencies_hz
+    times, tip = np.arange(0.0, 2.0, 0.00105), 0.0  # mode 6 is above half the sampling rate
+    for hz in hertz:  # released from a force at the tip, dashpots in proportion to the springs
+        zeta, omega = 0.0021 * hz / hertz[0], 2.0 * pi * hz
+        tip = tip + np.exp(-zeta * omega * times) * np.cos(omega * np.sqrt(1.0 - zeta**2) * times) / hz**2
+    path.write_text("t,tip\n" + "".join(f"{t:.9g},{y:.12g}\n" for t, y in zip(times, tip, strict=True)))
+    result = verify.compare_frequencies(STEEL, path)
+    assert result.data["passed"]
+    assert len(result.data["record"]) > 4
+    assert [row["listed"] for row in result.tables[0].records()] == pytest.approx(hertz[:4], rel=5e-3)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from verify.analysis.verdict import per_cent
 from verify.arrays import Array
 from verify.compare.candidates import EXACT, Candidate, frequencies_hz
 from verify.compare.reading import FrequencyList, read_table, solver_cells
@@ -28,6 +29,8 @@ DIGITS, ROUNDED = 10, 0.75
 """Decimals of a time that may be rounded; deviation from even spacing, over its last digit, by half a digit and fit."""
 STEADY = 1e-4
 """Damping ratio below which a single mode may be driven."""
+DAMPED = 0.1
+"""Damping ratio from which a mode lasts less than two cycles: an aliased mode moved one of 18 % by 2 % in frequency."""
 ALIASES, NEAR = 12, 0.01
 """Modes of the beam that may be sampled too slowly, and the relative error of their frequency in a record."""
 
@@ -114,9 +117,15 @@ def _last_digit(times: Array) -> float:
 
 def as_list(ring: RingDown, source: str) -> FrequencyList:
     """The undamped frequencies of a record, with their 95 % intervals as digits."""
-    hertz = np.array([mode.undamped_hz for mode in ring.modes])
-    widths = np.array([mode.hz_interval[1] - mode.hz_interval[0] for mode in ring.modes])
+    hertz = np.array([mode.undamped_hz for mode in _resolved(ring)])
+    widths = np.array([mode.hz_interval[1] - mode.hz_interval[0] for mode in _resolved(ring)])
     return FrequencyList(source=source, values=hertz, digits=np.maximum(widths / hertz, 1e-12), declared=True)
+
+
+def _resolved(ring: RingDown) -> list[RingMode]:
+    """Modes but those that decay so fast that what else is in the residuals moves them, where it is not white."""
+    light = [mode for mode in ring.modes if ring.white or abs(mode.zeta) < DAMPED]
+    return light or [*ring.modes]
 
 
 def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | None = None) -> Result:
@@ -131,12 +140,15 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     def row(number: int, mode: RingMode) -> tuple[object, ...]:
         return number, mode.hz, mode.halves[0], mode.zeta, mode.halves[1], *mode.amplitude
 
-    rows = [row(number, mode) for number, mode in enumerate(ring.modes, start=1)]
+    listed = _resolved(ring)
+    rows = [row(number, mode) for number, mode in enumerate(listed, start=1)]
     used = record.times[record.times >= ring.start]
     span = f"{len(used)} samples over {used[-1] - used[0]:.4g} s, noise {ring.noise:.2g}"
     notes = [f"Least squares over {span}, with offset and drift. Listed above: undamped frequencies.", *record.notes]
     if len(used) < len(record.times):
         notes.append(f"Free vibration from {ring.start:.4g} s on; what is before, as the rise of a load, is left out.")
+    if lost := [f"{mode.hz:.4g} Hz at {per_cent(mode.zeta)}" for mode in ring.modes if mode not in listed]:
+        notes.append(f"Left out, as damped too heavily beside what is left of the signals: {', '.join(lost)}.")
     unseen, warnings = _unseen(ring, beam) if beam else ([], [])
     notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
     warnings += [COLOURED] * (not ring.white)
