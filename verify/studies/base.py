@@ -30,6 +30,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     title: ClassVar[str] = ""  # heading on the page
     devices: ClassVar[bool] = False  # whether it accepts a drive with devices and shunts on the beam
     accepts: ClassVar[tuple[str, ...]] = ()  # those of the two that it accepts otherwise
+    reads: ClassVar[tuple[str, ...] | None] = None  # tables of a scene besides the beam; None where it may read any
     files: ClassVar[tuple[str, ...]] = ()  # fields that are paths, relative to the folder of the scene file
 
     @property

@@ -88,6 +88,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
     name, title, accepts = "motor", "The motor", ("drive.shunt",)
+    reads = ("drive", "slider", "motion")
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
     count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements; by default within 1 %.")] | None = None

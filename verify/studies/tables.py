@@ -177,8 +177,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cach
     quantity = QUANTITIES.named(name)
     if "beam" not in quantity.reads:
         return []
-    fields, groups = msgspec.structs.fields(quantity.schema), quantity.bind(arguments).values()
-    values = {field.name: field.default for field in fields if not field.required} | dict(arguments)
+    values, groups = quantity.with_defaults(arguments), quantity.bind(arguments).values()
     mode, hertz = values.get("mode"), values.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz
