@@ -12,7 +12,7 @@ import pytest
 import scipy.linalg  # noqa: F401
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from verify import Beam, Excitation, InputError, PointForce, Slider, free_vibration, load_scene, run_scene, simulate
+from verify import Beam, Excitation, PointForce, Slider, free_vibration, load_scene, run_scene, simulate
 from verify.analysis.solution_cache import SolutionCache
 from verify.linear.base import BeamModel
 from verify.linear.modes import Modes
@@ -116,12 +116,6 @@ def test_blas_has_one_thread_inside_and_as_many_as_before_afterwards(door, tmp_p
     door(inside)
     assert inside
     assert inside == [{1}] * len(inside)
-    assert threads() == {3}
-
-
-def test_invalid_input_resets_the_threads():
-    with pytest.raises(InputError):
-        simulate(STRIP, Excitation(FORCE, 700.0), -1.0, count=7)
     assert threads() == {3}
 
 

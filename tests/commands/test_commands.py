@@ -90,9 +90,7 @@ REFUSED = [
     ("choose bare.toml --mode 1,3 --error 1%", "the last mode, or all of a range"),
     ("choose bare.toml --mode 2 --error 1% wall", "RULE=VALUE"),
     ("quantities nothing-like-it", "no quantity matches"),
-    ("scenes show nowhere", "neither a packaged scene nor a file"),
     ("scenes init bare.toml", "exists"),
-    ("scenes init other.toml --from nowhere", "neither a packaged scene nor a file"),
     ("choose --mode 1 --error 1% --beam", "requires an argument"),
     ("choose bare.toml --mode 1 --error 1% --beam=1mx2x1mm_steel,clamped-free", "rule = 'bare.toml'"),
     ("measure --beam=1mx40x8mm,pinned mode.frequency model=analytic mode=1", "end it by two of pinned"),
@@ -209,12 +207,6 @@ def test_table_in_every_format(call, data, bare):
     assert "order" in call(line)[1]
 
 
-def test_table_of_another_study(data, bare):
-    rows = data("table bare.toml --study spectrum")["tables"][0]["rows"]
-    assert [row["mode"] for row in rows] == [1, 2, 3]
-    assert len(data("table bare.toml modes=2 --study spectrum")["tables"][0]["rows"]) == 2
-
-
 FEET = """name = "feet"
 [beam]
 length = 0.43
@@ -256,42 +248,16 @@ def test_a_slider_that_may_leave_the_beam_moves_by_table_run_and_measure(data, b
         assert row["energy imbalance"] < 0.01
 
 
-def test_motion_without_slider_is_no_study_and_its_table_names_what_it_needs(call, data, bare):
-    before, after = FEET.split("[slider]")
-    Path("beam.toml").write_text(before + "[motion]" + after.split("[motion]")[1])
-    assert not next(row for row in data("plan beam.toml")["tables"][0]["rows"] if row["what"] == "motion")["runs"]
-    status, _, err = call("table beam.toml --study motion")
-    assert status == 2
-    assert "slider" in err
-
-
 def test_charts_are_written(call, bare):
     assert call("table bare.toml --study spectrum --charts charts")[0] == 0
     assert any(one.read_text().startswith("<svg") for one in Path("charts").glob("*.svg"))
     assert len(list(Path("charts").glob("*.png"))) == len(list(Path("charts").glob("*.svg"))) > 0
 
 
-def test_choose_is_sufficient(data, bare):
-    rows = data("choose bare.toml --mode 2 --error 0.5%")["tables"][0]["rows"]
-    for row in rows:
-        assert abs(row["error"]) <= 0.005
-        smaller = f"measure bare.toml mode.frequency_error mode=2 count={row['N'] - 1} model="
-        model = "segment" if row["model"].startswith("segment") else "fem"
-        assert abs(data(smaller + model)["value"]) > 0.005
-
-
 def test_choose_takes_ranges_and_rules(data):
     rows = data(f"choose {SMALL} wall=half,gregory --mode 1-3 --error 1%")["tables"][0]["rows"]
     assert len(rows) == 3
     assert max(row["N"] for row in rows) < 60
-
-
-def test_sweep_of_a_quantity(data, bare):
-    line = "sweep bare.toml mode.frequency model=segment mode=2 count=9,17 beam.length=0.43,0.86"
-    rows = data(line)["tables"][0]["rows"]
-    assert len(rows) == 4
-    short, long = ([row["mode.frequency"] for row in rows if row["beam.length"] == length] for length in (0.43, 0.86))
-    assert [a / b for a, b in zip(short, long, strict=True)] == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
 def test_a_sweep_without_any_value_is_bad_input(call, bare):

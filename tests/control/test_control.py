@@ -11,7 +11,6 @@ from verify.analysis.solution_cache import SolutionCache
 from verify.control.controller import Controller, ExtremumSeeker, magnitude_optimum, phase_locked_loop
 from verify.control.loop import closed_loop, wave_drive
 from verify.control.plants import AveragedMotor, Resonance, beam_tick
-from verify.quantities.base import evaluate
 from verify.quantities.control import ControlOptions
 from verify.scene.model import Drive, Scene, SceneForce
 from verify.studies.control import Control
@@ -177,14 +176,6 @@ SLIDER = Slider(mass=0.004, mu=0.23, slope=20.0, coupling="one-way")
 SCENE = Scene(name="small", beam=BEAM, drive=DRIVE, slider=SLIDER)
 OWN = {"model": "fem", "count": 9, "modal_damping": 0.02, "upper": 2.5, "target": -5e-3, "speed": -4e-3}
 CACHE = SolutionCache(BEAM)
-
-
-def test_overshoot_of_the_linear_plant_tends_to_the_magnitude_optimum():
-    fine = {"plant": "linear", "sample_time": 1.9e-5, "duration": 0.012, "speed": -4.95e-3}
-    found = {plant: evaluate("control.overshoot", OWN | fine | {"plant": plant}, SCENE, CACHE)
-             for plant in ("linear", "averaged")}  # fmt: skip
-    assert found["linear"] == pytest.approx(exp(-pi), rel=2e-3)
-    assert found["averaged"] == pytest.approx(exp(-pi), rel=0.05)
 
 
 def test_the_wave_between_resonances_follows_sooner_than_one_resonance():

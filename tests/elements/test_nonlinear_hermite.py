@@ -1,16 +1,14 @@
 """Nonlinear Hermite elements against elasticae, rotating beams, published motions, the nonlinear and linear models."""
 
 from dataclasses import replace
-from math import cos, pi, sin, sqrt
+from math import pi
 
 import msgspec
 import numpy as np
 import pytest
 from reference.curved_rods import frequencies, helix
 from reference.elastica import follower_tip
-from reference.rotating import flapping
 from scipy.integrate import quad_vec
-from scipy.interpolate import CubicSpline
 
 from verify import (
     Beam,
@@ -24,8 +22,6 @@ from verify import (
     large_motion,
     simulate,
 )
-from verify.analysis.comparison import observed_order
-from verify.cases.table import CASES
 from verify.chain import motion
 from verify.chain.kinematics import at_rest
 from verify.chain.linearisation import linearise
@@ -37,7 +33,6 @@ from verify.problem.base_motion import Base, polynomial, tabulated
 
 CANTILEVER = Beam(length=1.3, bending_stiffness=0.7, mass_per_length=2.1, supports=("clamped", "free"))
 L, EI, RHO_A = CANTILEVER.length, CANTILEVER.bending_stiffness, CANTILEVER.mass_per_length
-UNIT = sqrt(EI / RHO_A) / L**2  # of angular frequencies, rad/s
 SPUN = Beam(length=10.0, bending_stiffness=1.4e4, mass_per_length=1.2, supports=("clamped", "free"))
 ELASTICA = [  # P L^2/EI; deflection, shortening, rotation of the tip: elliptic integrals in 25 digits
     (0.25, 0.08274591535, 0.00411781841, 0.1242924421),
@@ -134,12 +129,6 @@ def test_a_dead_load_bends_it_to_the_elastica(load, deflection, shortening, turn
     )
 
 
-def test_four_elements_err_by_two_parts_in_ten_thousand_and_their_order_is_four():
-    errors = [elements(n).bend(4.0 * EI / L**2).deflection / L / 0.6699641813 - 1.0 for n in (4, 8, 16)]
-    assert errors[0] == pytest.approx(-1.7e-4, rel=0.1)
-    assert observed_order([4, 8, 16], errors) == pytest.approx(3.7, abs=0.3)
-
-
 @pytest.mark.parametrize("force", [1.0, 4.0, 10.0])
 def test_a_follower_force_bends_it_as_by_integration_from_the_tip(force):
     tip, turn = follower_tip(force)
@@ -159,47 +148,6 @@ def test_a_column_is_refused_beyond_the_weight_that_it_carries_and_bends_with_a_
     with pytest.raises(InputError, match="stable"):
         elements(8).bend(gravity=(-1.001 * heavy, 0.0))
     assert elements(8).bend((0.0, 1e-3 * EI / L**2), gravity=(-1.3 * heavy, 0.0)).turn > 1.0
-
-
-@pytest.mark.parametrize(
-    ("speed", "flap", "lead_lag"),  # Legendre-Ritz and a power series in 40 digits
-    [
-        (3.0, [4.797278532363, 23.3202636743, 62.98496748068], 3.743511896211),
-        (12.0, [13.17015048751, 37.60311233119, 79.61447848946], 5.42704927779),
-        (6.0, flapping(6.0), sqrt(flapping(6.0)[0] ** 2 - 36.0)),
-    ],
-)
-def test_a_rotating_cantilever_flaps_and_lags_as_by_the_series_with_order_four(speed, flap, lead_lag):
-    figures = []
-    for count in (12, 24, 48):
-        spun = elements(count, axial=1e9).bend(rate=speed * UNIT)
-        found = [*spun.frequencies_hz(flapping=True)[:3], spun.frequencies_hz()[0]]
-        figures.append(2.0 * pi * np.array(found) / UNIT / [*flap, lead_lag] - 1.0)
-    assert abs(figures[-1]).max() < 1e-6
-    if speed == 3.0:  # at 12 the error of mode 3 changes its sign
-        assert observed_order([12, 24, 48], [error[2] for error in figures]) == pytest.approx(4.0, abs=0.1)
-
-
-@pytest.mark.parametrize(("speed", "mode"), [(3.0, 1), (3.0, 3), (12.0, 1), (12.0, 3)])
-def test_joints_that_the_tension_softens_make_a_rotating_chain_converge_with_order_four(speed, mode):
-    names = {(3.0, 1): 3.743511896211, (12.0, 1): 5.42704927779}
-    exact = names.get((speed, mode)) or sqrt({3.0: 62.98496748068, 12.0: 79.61447848946}[speed] ** 2 - speed**2)
-    plain, soft = (
-        [CASES["rotating-cantilever-1"].run(mode, speed, joints, n) / exact - 1.0 for n in (80, 160)]
-        for joints in ("series", "tensioned")
-    )
-    assert plain[0] / plain[1] == pytest.approx(4.0, rel=0.1)
-    assert soft[0] / soft[1] == pytest.approx(16.0, rel=0.12)
-    assert abs(soft[0]) < plain[0] / 10.0
-
-
-def spin_up(t, speed=6.0, end=15.0):
-    """Angle, rate and acceleration of Kane's hub."""
-    if t >= end:
-        return speed * (t - 0.5 * end), speed, 0.0
-    w = 2.0 * pi / end
-    angle = speed / end * (0.5 * t * t + (cos(w * t) - 1.0) / w**2)
-    return angle, speed / end * (t - sin(w * t) / w), speed / end * (1.0 - cos(w * t))
 
 
 def test_a_rotating_beam_stretches_as_by_the_closed_form_however_short_its_elements_are():
@@ -226,30 +174,6 @@ def test_under_a_moment_its_frequencies_are_those_of_the_chain_and_a_follower_fo
         elements(4).bend(follower=0.3).frequencies_hz()
 
 
-def test_a_beam_that_is_spun_up_lags_as_published_and_ends_with_its_steady_extension():
-    model, times, lags = NonlinearHermite(SPUN, 16, axial_stiffness=2.8e7), np.linspace(0.0, 7.5, 301), []
-    for tolerance in (8e-7, 1e-7):  # the cube root of eight doubles the steps
-        tip = large_motion(model, times, base=Base(rotation=spin_up), tolerance=tolerance).tip[:, 1]
-        spline = CubicSpline(times[240:], tip[240:])
-        lags.append(min(spline(spline.derivative().roots(extrapolate=False))))
-    assert lags[1] == pytest.approx(-0.573786, rel=3e-4)
-    assert lags[1] + (lags[1] - lags[0]) / 3.0 == pytest.approx(-0.573786, abs=2e-5)
-    steady = model.bend(rate=6.0)
-    assert steady.tip == pytest.approx([10.0 + 5.1431745504e-4, 0.0], abs=1e-6)  # rounding in EA
-
-
-def test_links_lag_as_published_on_a_hub_that_is_spun_up_and_keep_their_energy_balance():
-    times, lags = np.linspace(0.0, 7.5, 301), []
-    for count in (10, 20, 40):
-        chain = replace(build_system(SPUN, count), base=Base(rotation=spin_up))
-        run = motion.simulate(chain, at_rest(chain), times, tolerance=1e-7)
-        spline = CubicSpline(times[240:], run.in_base()[240:, -1, 1])
-        lags.append(min(spline(spline.derivative().roots(extrapolate=False))))
-        assert abs(run.residual()).max() < 1e-8 * run.energies().sum(axis=0).max()
-    assert observed_order([10, 20, 40], [lag + 0.573750 for lag in lags]) == pytest.approx(1.93, abs=0.1)
-    assert lags[2] + (lags[2] - lags[1]) / 3.0 == pytest.approx(-0.573750, abs=2e-6)
-
-
 def test_links_and_elements_move_alike_on_a_base_that_turns_and_shakes():
     beam = Beam(length=0.8, bending_stiffness=0.9, mass_per_length=1.7, supports=("clamped", "free"))
     shake = tabulated(np.linspace(0.0, 1.0, 21), 0.07 * np.sin(np.linspace(0.0, 1.0, 21) * 5.0) ** 2)
@@ -263,20 +187,6 @@ def test_links_and_elements_move_alike_on_a_base_that_turns_and_shakes():
     run = large_motion(model, times, forces=forces, base=base, start_rate=start_rate, tolerance=1e-8)
     assert run.tip == pytest.approx(tips[1] + (tips[1] - tips[0]) / 3.0, abs=1e-4)
     assert abs(run.tip[:, 1]).max() > 0.1
-
-
-def test_a_pendulum_swings_as_the_chain_of_links_does():
-    beam = Beam(length=1.0, bending_stiffness=0.01, mass_per_length=1.0, supports=("pinned", "free"))
-    times, tips = [0.0, 1.0, 2.0], []
-    for links in (40, 80):
-        chain = replace(build_system(beam, links), gravity=(0.0, -1.0))
-        tips.append(motion.simulate(chain, at_rest(chain), times).joints()[:, -1])
-    links = tips[1] + (tips[1] - tips[0]) / 3.0
-    model = NonlinearHermite(beam, 16, axial_stiffness=1e5)
-    falls = large_motion(model, times, forces=Forces(gravity=np.array([0.0, -1.0])))
-    assert falls.tip[1:] == pytest.approx(links[1:], abs=1.5e-4)
-    assert falls.tip[1] == pytest.approx([0.766509, -0.519676], abs=1.5e-4)
-    assert abs(falls.energy_lost) < 1e-4
 
 
 def test_a_mode_loses_the_energy_that_steps_of_the_mean_size_take_and_up_to_as_much_by_their_changes():

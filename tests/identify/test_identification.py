@@ -78,17 +78,6 @@ def test_closed_forms_solve_the_equations_of_motion():
 # --- Intervals ---
 
 
-def test_standard_deviations_are_the_cramer_rao_bounds():
-    model = friction.decay(SLIDER, TIMES)
-    found = fit(model, measured(model, 0.0, 0), ("mu", "slope"), start={"mu": 0.1, "slope": 15.0}, noise=1e-3)
-    mu, slope = found.estimates.values()
-    assert (mu.value, slope.value) == pytest.approx((0.2, 50.0), rel=1e-7)
-    assert (mu.sd, slope.sd) == pytest.approx((3.7201e-4, 0.71331), rel=2e-5)
-    assert slope.interval == pytest.approx(
-        (50.0 * np.exp(-1.959964 * 0.0142662), 50.0 * np.exp(1.959964 * 0.0142662)), rel=1e-5
-    )
-
-
 def test_a_record_that_ends_before_the_bend_leaves_the_slope_open():
     model = friction.decay(SLIDER, TIMES[TIMES <= 0.02])  # K v = 3.05 at its end
     found = fit(model, measured(model, 0.0, 0), ("mu", "slope"), noise=1e-3)

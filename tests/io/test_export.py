@@ -11,8 +11,7 @@ from PIL import Image
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
-from verify.io.data import Request, dataset
-from verify.io.export import write
+from verify.io.export import Request, dataset, write
 from verify.scene.load import load_scene
 
 SMALL = Path(__file__).parents[1] / "report" / "small.toml"

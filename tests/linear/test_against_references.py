@@ -10,7 +10,6 @@ from verify import Beam, ExactModel, HermiteModel, PointForce, PointMass, PointS
 from verify.errors import InputError
 
 X = np.array([0.13, 0.37, 0.58, 0.81])  # fractions of the length
-PLACES = X * STRIP.length
 HERTZ = 613.0
 EULER = "euler-bernoulli"
 THICK = ("rayleigh", "timoshenko")

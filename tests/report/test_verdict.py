@@ -273,7 +273,7 @@ def test_a_quantity_has_the_margins_of_its_model_and_its_run():
     evaluate("slider.displacement", arguments, scene, cache)
     names = by_name(quantity_margins("slider.displacement", arguments, scene, cache))
     assert {"discretisation of 31 Hermite elements", "lift-off", "bending across the width"} <= set(names)
-    (run,) = cache.motions.values()
+    (run,) = cache.runs
     assert by_name(run_margins(run, scene.slider, "elements"))["lift-off"].size == run.margins.lift_off
 
 

@@ -96,11 +96,6 @@ def test_every_error_of_a_file_is_listed(tmp_path):
         ("0.73", "1" + 400 * "0", ["beam.length = a whole number of 1329 bits: give a finite number above 0 (m)"]),
         ("length = 0.73", "", ["beam.length is missing: give it a value"]),
         ('id = "g"', "", ["gate[0].id is missing: give it a value"]),
-        (
-            "density = 4470",
-            "density = 4470\nsupports = ['pinned', 'fre']",
-            ["beam.supports[1] = 'fre' is not known: did you mean 'free'?"],
-        ),
         ("mode.frequency", "mode.frequncy", ["gate.g: quantity = 'mode.frequncy' is not known: did you mean 'mode.frequency'?"]),
     ],
 )  # fmt: skip

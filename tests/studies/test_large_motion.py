@@ -10,9 +10,7 @@ import pytest
 from verify import InputError, run_scene
 from verify.analysis.solution_cache import SolutionCache
 from verify.cli import status_of
-from verify.quantities import blade
 from verify.quantities.base import evaluate
-from verify.quantities.blade import Path, path_of, told_path
 from verify.scene.load import scene_from
 from verify.studies.base import result_of
 
@@ -159,25 +157,6 @@ def test_energy_that_long_steps_add_or_take_is_a_condition():
 def test_a_base_that_turns_absurdly_fast_is_refused_before_it_takes_hours(model):
     with pytest.raises(InputError, match="duration"):
         measured(scene("rotation = [0.0, 0.0, 1e6]"), "lag", model=model, count=3)
-
-
-@BOTH
-def test_a_motion_is_refused_by_the_steps_that_it_would_take(model, monkeypatch):
-    options = {"model": model, "count": 4 if model == "fem" else 12, "tolerance": 1e-7}
-    shaken = scene_from(tomllib.loads(BLADE) | {"base": {"duration": 1.9, "y": [0.0, 0.0, 1.1, -0.3]}})
-    path = path_of(shaken, SolutionCache(shaken.beam), Path(**options))
-    taken = 1.9 / path.step
-    assert taken > 1000
-    told = []
-    monkeypatch.setattr(blade, "TOLD", 0.0)
-    for share in (0.4, 2.5):
-        monkeypatch.setitem(blade.MOST_STEPS, model, share * taken)
-        if share > 1.0:
-            assert told_path(shaken, SolutionCache(shaken.beam), Path(**options), told.append).step == path.step
-        else:
-            with pytest.raises(InputError, match="steps"):
-                path_of(shaken, SolutionCache(shaken.beam), Path(**options))
-    assert len(told) == 1
 
 
 def test_a_table_of_a_polynomial_moves_it_as_the_polynomial_does():

@@ -1,7 +1,7 @@
 """Cache of the solutions of one beam by all models, and their errors against the exact beam."""
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import msgspec
 
@@ -15,10 +15,7 @@ from verify.linear.registry import MEAN, MODELS, bounding, discrete
 from verify.problem.beam import Beam, features
 from verify.settings import DEFAULT
 
-if TYPE_CHECKING:
-    from verify.dynamics.result import Motion
-    from verify.linear.field import HarmonicField
-
+T = TypeVar("T")
 EULER = DEFAULT.theory
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Settings of a model other than their defaults, for instance (("wall", "half"),)."""
@@ -83,14 +80,25 @@ class SolutionCache:
         self.beam = beam
         self.progress: Callable[[float], None] = lambda fraction: None
         """Called with the completed fraction of a long time integration."""
-        self.fields: dict[Any, HarmonicField] = {}
-        """Harmonic fields, at one frequency or many, by everything that determines them."""
-        self.motions: dict[Any, Motion] = {}
-        """Time integrations of a beam, with or without a slider, by their arguments."""
-        self.motors: dict[Any, Any] = {}
-        """Steady states and free runs of a motor, by their arguments."""
+        self._stored: dict[Any, Any] = {}
         self._modes: dict[tuple[str, int, Settings], Modes] = {}
-        self._index: dict[tuple[str, int, Settings, int], int] = {}
+
+    def once(self, key: Any, compute: Callable[[], T]) -> T:
+        """The value of a key, computed at its first use."""
+        if key not in self._stored:
+            self._stored[key] = compute()
+        value: T = self._stored[key]
+        return value
+
+    def call(self, function: Callable[..., T], *arguments: Any) -> T:
+        """The value of a function, computed once for equal arguments."""
+        return self.once((function, *arguments), lambda: function(*arguments))
+
+    @property
+    def runs(self) -> list[Any]:
+        """Time integrations with a slider, then those of motors (`dynamics.result.Motion`)."""
+        runs = [one for key, one in self._stored.items() if key[0] == "motion"]
+        return runs + [one.run for one in self._stored.values() if hasattr(one, "run")]
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> Modes:
         """At least `n_modes` modes of a discrete model; settings of other models are ignored. Raises InputError."""
@@ -134,13 +142,14 @@ class SolutionCache:
         """
         if not self.beam.uniform or theory_of(settings) != EULER:
             return mode - 1
-        key = (*self._key(model, count, settings), mode)
-        if key not in self._index:
+
+        def paired() -> int:
             modes = self.modes(model, count, mode, settings)
             stride = max(len(modes.points) // (16 * modes.n_modes + 64), 1)
             exact = ExactModel(self.beam, EULER).modes(modes.n_modes).deflection(modes.points[::stride])
-            self._index[key] = comparison.paired_index(modes, exact, mode, stride)
-        return self._index[key]
+            return comparison.paired_index(modes, exact, mode, stride)
+
+        return self.once(("index", *self._key(model, count, settings), mode), paired)
 
     def frequency_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Signed error relative to the exact frequency by the same theory. Raises InputError."""

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import click
 
@@ -12,8 +12,8 @@ from verify.answers.ringing import with_run
 from verify.commands.choose import relative_error
 from verify.commands.shared import (
     CHAINS,
-    GATE_FAILED,
     BeamCommand,
+    Seconds,
     format_options,
     overrides_option,
     scene_argument,
@@ -25,9 +25,8 @@ from verify.errors import InputError, printable
 from verify.report.result import Table
 from verify.scene.file import load_beam
 from verify.settings import DEFAULT, WALLS
-from verify.validation import typed, unit
+from verify.validation import typed
 
-Seconds = Annotated[float, unit("s")]
 RECORDS = ".csv", ".txt", ".tsv", ".dat", ".asc"
 """Suffixes of records of a run."""
 FIRST = 4
@@ -136,8 +135,6 @@ def judge_chain(
             result, tables=[_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
         )
     show(result, **formats)
-    if not result.data["passed"]:
-        raise SystemExit(GATE_FAILED)
 
 
 def _shortened(table: Table) -> Table:

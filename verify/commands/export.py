@@ -10,13 +10,10 @@ from verify.commands.shared import CHAINS, BeamCommand, overrides_option, progre
 from verify.engines.describe import describe
 from verify.engines.writers import write as write_chain
 from verify.errors import printable
-from verify.io.data import Request
-from verify.io.export import write
+from verify.io.export import Request, write
 from verify.scene.file import load_beam
 from verify.scene.load import load_scene
-
-PARTS = {"modes": {"spectrum"}, "wave": {"drive"}, "motion": {"drive", "slider"}, "convergence": set[str]()}
-"""Tables of a scene that contents read besides the beam and their own; any where the file type decides."""
+from verify.studies.base import STUDIES
 
 
 @click.command(cls=BeamCommand)
@@ -52,7 +49,8 @@ def export(
         make = partial(describe, beam)
         described = make(count or fewest(make, len(beam.pieces), mode or 3, 0.01))
         return click.echo(printable(write_chain(described, Path(path))))
-    parts = PARTS.get(what, set()) | {what} if what else None
+    study = "spectrum" if what == "modes" else what or ""
+    parts = {study, *(STUDIES[study].reads or () if study in STUDIES else ())} if what else None
     request = Request(what=what, model=model, count=count, mode=mode, samples=samples)
     with progress() as step:
         summary = write(load_scene(scene, overrides, parts), Path(path), request, step)

@@ -1,18 +1,16 @@
 """`verify identify`: stiffness, clamp and damping of a strip from records of its free vibration."""
 
 from shlex import quote
-from typing import Annotated, Any
+from typing import Any
 
 import click
 
 from verify.answers.strips import identify_records
-from verify.commands.shared import BeamCommand, format_options, overrides_option, scene_argument, show
+from verify.commands.shared import BeamCommand, Metres, format_options, overrides_option, scene_argument, show
 from verify.errors import printable
 from verify.problem.phrase import PREFIX
 from verify.scene.file import load_beam
-from verify.validation import typed, unit
-
-Metres = Annotated[float, unit("m")]
+from verify.validation import typed
 
 
 @click.command(cls=BeamCommand)

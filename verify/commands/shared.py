@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
@@ -17,6 +17,7 @@ from verify.problem.materials import MATERIALS
 from verify.problem.phrase import EXAMPLE, PREFIX
 from verify.report.plotting import figure_files
 from verify.report.result import Result, to_json
+from verify.validation import unit
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,6 +28,9 @@ CHAINS = ".xml", ".mjcf", ".sdf", ".urdf"
 GATE_FAILED = 1
 """Exit status where a gate or check failed."""
 
+Seconds = Annotated[float, unit("s")]
+Metres = Annotated[float, unit("m")]
+Hertz = Annotated[float, unit("Hz")]
 scene_argument = click.argument("scene")
 
 
@@ -94,7 +98,8 @@ def show(
 ) -> None:
     """Print a result on standard output: for a person, or in one of the formats for programs; write its charts.
 
-    Raises click.UsageError for more than one format, InputError for CSV or Markdown of a result without a table.
+    Exit status 1 where `data` says that it has not passed. Raises click.UsageError for more than one format, InputError
+    for CSV or Markdown of a result without a table.
     """
     if as_json + as_csv + as_markdown > 1:
         raise click.UsageError("--json, --csv and --markdown exclude each other: give one of them.")
@@ -109,16 +114,14 @@ def show(
     else:
         result.print(console())
     if charts is not None:
-        _save_charts(result, writable_folder(Path(charts), "--charts"))
-
-
-def _save_charts(result: Result, folder: Path) -> None:
-    """Write every chart of a result as ID.svg and ID.png. Raises InputError."""
-    for figure in result.figures:
-        svg, png = figure_files(figure)
-        write_whole(folder / f"{figure.id}.svg", svg, "--charts")
-        with whole(folder / f"{figure.id}.png", "--charts") as part:
-            part.write_bytes(png)
+        folder = writable_folder(Path(charts), "--charts")
+        for figure in result.figures:
+            svg, png = figure_files(figure)
+            write_whole(folder / f"{figure.id}.svg", svg, "--charts")
+            with whole(folder / f"{figure.id}.png", "--charts") as part:
+                part.write_bytes(png)
+    if not result.data.get("passed", True):
+        raise SystemExit(GATE_FAILED)
 
 
 def print_json(value: Any) -> None:

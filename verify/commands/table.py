@@ -11,11 +11,6 @@ from verify.scene.load import load_scene, tables_of, type_at
 from verify.studies.base import STUDIES
 from verify.validation import convert
 
-IN_TIME = {"drive", "slider", "motion"}
-READS: dict[str, set[str]] = {"spectrum": set(), "convergence": set(), "wave": {"drive"}}
-READS |= {"large-motion": {"base", "drive"}, "motion": IN_TIME, "motor": IN_TIME, "control": IN_TIME}
-"""Tables of a scene that a study reads besides the beam and its own section; other studies may read any."""
-
 
 @click.command(cls=shared.BeamCommand)
 @shared.scene_argument
@@ -36,7 +31,8 @@ def table(scene: str, options: tuple[str, ...], study: str | None, overrides: tu
         home = next((home for home in homes if type_at(home) is not None), "")
         if home and key not in keys:
             raise InputError(f"{study}.{key} is not a known key: give --set {home}={text}")
-    parts = READS[study] | {study} if study in READS else None
+    reads = STUDIES[study].reads
+    parts = None if reads is None else {*reads, study}
     loaded = load_scene(scene, (*overrides, *(f"{study}.{option}" for option in options)), parts)
     chosen = loaded.studies.get(study) or convert({}, STUDIES[study], study)
     chosen.check(loaded)

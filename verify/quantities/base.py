@@ -116,10 +116,15 @@ class Quantity:
         }
         return values | groups
 
+    def with_defaults(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """The arguments and the defaults of the others."""
+        fields = msgspec.structs.fields(self.schema)
+        return {field.name: field.default for field in fields if not field.required} | dict(arguments)
+
     def unit_of(self, arguments: Mapping[str, Any]) -> str:
         """Its unit; where that depends on an argument as resistance or inductance, the unit for these arguments."""
-        values = {field.name: field.default for field in msgspec.structs.fields(self.schema)} | dict(arguments)
-        units = [UNITS[value] for value in values.values() if isinstance(value, str) and value in UNITS]
+        values = self.with_defaults(arguments).values()
+        units = [UNITS[value] for value in values if isinstance(value, str) and value in UNITS]
         return units[0] if units and " or " in self.unit else self.unit
 
     @one_blas_thread()

@@ -109,13 +109,9 @@ def told_path(scene: Scene, cache: "SolutionCache", path: Path, progress: Callab
     """That of `path_of`; `progress` is called with the time that a run of more than `TOLD` seconds takes on."""
     if scene.base is None:
         raise InputError("base is missing: add [base] with a duration and a rotation, x or y")
-    key = ("blade", scene.base, path)
-    if key not in cache.motors:
-        times, count = np.linspace(0.0, scene.base.duration, path.samples), path.count or COUNTS[path.model]
-        run = _of_links if path.model == "segment" else _of_elements
-        cache.motors[key] = run(scene.beam, scene.base, path, count, times, _left(progress))
-    stored: TipPath = cache.motors[key]
-    return stored
+    base, run = scene.base, _of_links if path.model == "segment" else _of_elements
+    times, count = np.linspace(0.0, base.duration, path.samples), path.count or COUNTS[path.model]
+    return cache.once(("blade", base, path), lambda: run(scene.beam, base, path, count, times, _left(progress)))
 
 
 def elements(beam: Beam, count: int, axial_stiffness: float | None) -> "NonlinearHermite":

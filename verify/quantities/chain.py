@@ -142,10 +142,8 @@ class OnChain(msgspec.Struct, frozen=True, kw_only=True):
         case |= {"load": self.load, "joint_dashpot": self.joint_dashpot, "step": options.time_step(scene)}
         forces, hertz, seconds = _drive(scene, time)
         drive = scene.beam, Excitation(forces, hertz), seconds
-        key: Any = ("chain", *drive, *case.values())
-        if key not in cache.motors:
-            cache.motors[key] = slide_on_chain(*drive, **case, keep=Keep(samples=2), progress=cache.progress)
-        motion: Motion = cache.motors[key]
+        how: dict[str, Any] = {**case, "keep": Keep(samples=2), "progress": cache.progress}
+        motion = cache.once(("chain", *drive, *case.values()), lambda: slide_on_chain(*drive, **how))
         if not motion.statistics.finished:
             raise InputError(
                 f"duration = {seconds:.12g} s: the slider {motion.statistics.stopped} after {motion.end.time:.6g} s, "

@@ -1,7 +1,6 @@
 """The controlled motor of a scene: settings of the loop, and its overshoot."""
 
 from functools import partial
-from typing import Any
 
 from verify.analysis.solution_cache import SolutionCache
 from verify.control import plants
@@ -11,7 +10,6 @@ from verify.errors import InputError
 from verify.motor.steady_state import MotorCase
 from verify.quantities import options as opt
 from verify.quantities.base import Scene, figures
-from verify.quantities.motor import cached
 
 
 class ControlOptions(LoopOptions, frozen=True, kw_only=True):
@@ -38,19 +36,20 @@ class ControlOptions(LoopOptions, frozen=True, kw_only=True):
             count=self.count,
             modal_damping=self.modal_damping,
         )
-        return self.loop_on(case, partial(cached, cache, plants.force_map))
+        return self.loop_on(case, partial(cache.call, plants.force_map))
 
     def response(self, scene: Scene, cache: SolutionCache, plant: str = "") -> Response:
         """The response of a plant, by default `plant`, computed once. Raises InputError."""
         plant = plant or self.plant
         options = {name: getattr(self, name) for name in ControlOptions.__struct_fields__} | {"plant": plant}
-        key: Any = ("control", *options.values(), scene.slider, scene.drive)
-        if key not in cache.motors:
+
+        def computed() -> Response:
             loop = self.loop(scene, cache)
             duration = self.duration or 30.0 * (loop.times[1] + loop.controller.sample_time)
             start = self.speed, loop.command
-            cache.motors[key] = closed_loop(loop.controller, loop.plants[plant], self.target, duration, start)
-        return cache.motors[key]  # type: ignore[no-any-return]
+            return closed_loop(loop.controller, loop.plants[plant], self.target, duration, start)
+
+        return cache.once(("control", *options.values(), scene.slider, scene.drive), computed)
 
 
 def response(scene: Scene, cache: SolutionCache, control: ControlOptions) -> Response:

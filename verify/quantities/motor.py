@@ -1,8 +1,7 @@
 """Quantities of a motor: a slider with unilateral contact, at a prescribed speed or free."""
 
-from collections.abc import Callable
 from operator import methodcaller
-from typing import Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, ClassVar
 
 import msgspec
 from msgspec import Meta
@@ -16,7 +15,6 @@ from verify.quantities import options as opt
 from verify.quantities.base import Scene, figures, quantity
 from verify.validation import unit
 
-Result = TypeVar("Result")
 Speed = Annotated[float, unit("m/s"), Meta(description="prescribed speed of the slider along +x, m/s")]
 
 
@@ -43,14 +41,6 @@ class MotorOptions(msgspec.Struct, frozen=True, kw_only=True):
         return MotorCase(beam=loaded.beam, forces=loaded.loads, frequency_hz=hertz, **settings)
 
 
-def cached(cache: SolutionCache, function: Callable[..., Result], *arguments: Any) -> Result:
-    """The value of a function, computed once for equal arguments."""
-    key = (function, *arguments)
-    if key not in cache.motors:
-        cache.motors[key] = function(*arguments)
-    return cache.motors[key]  # type: ignore[no-any-return]
-
-
 class Prescribed(MotorOptions, frozen=True, kw_only=True):
     """A slider at a prescribed speed and a fixed position."""
 
@@ -59,7 +49,7 @@ class Prescribed(MotorOptions, frozen=True, kw_only=True):
 
 def at_speed(scene: Scene, cache: SolutionCache, motor: Prescribed, *, speed: Speed = 0.0) -> SteadyState:
     """The motor at a prescribed speed. Raises InputError."""
-    return cached(cache, steady_state, motor.case(scene), speed, motor.periods)
+    return cache.call(steady_state, motor.case(scene), speed, motor.periods)
 
 
 for _name, _unit, _summary, _figure in (
@@ -85,7 +75,7 @@ def stall_force(scene: Scene, cache: SolutionCache, motor: Prescribed) -> float:
 @quantity("motor.no_load_speed", unit="m/s")
 def no_load_speed(scene: Scene, cache: SolutionCache, motor: Prescribed) -> float:
     """No-load speed along +x of a heavy slider: the prescribed speed at which the mean friction force vanishes."""
-    return cached(cache, no_load, motor.case(scene), motor.periods).speed
+    return cache.call(no_load, motor.case(scene), motor.periods).speed
 
 
 class FreeRun(MotorOptions, frozen=True, kw_only=True):
@@ -97,19 +87,19 @@ class FreeRun(MotorOptions, frozen=True, kw_only=True):
 @quantity("motor.free_speed", unit="m/s")
 def free_speed(scene: Scene, cache: SolutionCache, motor: FreeRun) -> float:
     """Mean speed of the free slider over the last quarter of a run; a light slider varies within a drive period."""
-    return cached(cache, transient, motor.case(scene), motor.periods).final_speed
+    return cache.call(transient, motor.case(scene), motor.periods).final_speed
 
 
 @quantity("motor.start_time", unit="s")
 def start_time(scene: Scene, cache: SolutionCache, motor: FreeRun) -> float:
     """Time constant of the free slider's start: 1 - 1/e of the change to its final mean speed, without overshoot."""
-    return cached(cache, transient, motor.case(scene), motor.periods).start_time
+    return cache.call(transient, motor.case(scene), motor.periods).start_time
 
 
 @quantity("motor.multiplier", unit="1")
 def multiplier(scene: Scene, cache: SolutionCache, motor: MotorOptions, *, speed: Speed = 0.0) -> float:
     """Largest Floquet multiplier of the periodic motion at a prescribed speed; stable below 1."""
-    return cached(cache, periodic_orbit, motor.case(scene), speed).largest_multiplier
+    return cache.call(periodic_orbit, motor.case(scene), speed).largest_multiplier
 
 
 @quantity("motor.contact_imbalance", unit="1")

@@ -100,10 +100,7 @@ def _simulated(cache: SolutionCache, arguments: dict[str, Any]) -> "Motion":
     """A simulation, computed once for equal arguments."""
     from verify.dynamics.simulate import simulate  # which `verify measure` of a mode does not load
 
-    key = tuple(arguments.items())
-    if key not in cache.motions:
-        cache.motions[key] = simulate(**arguments, progress=cache.progress)
-    return cache.motions[key]
+    return cache.once(("motion", *arguments.items()), lambda: simulate(**arguments, progress=cache.progress))
 
 
 def slider_run(scene: Scene, cache: SolutionCache, by: TimeOptions, slider: SliderOptions) -> "Motion":

@@ -70,11 +70,9 @@ def coverage(scene: Scene, cache: SolutionCache, *, parameter: Name, repeats: Re
     """Fraction of fits to synthetic data whose 95 % interval by Fisher information contains the true value."""
     study = _study(scene, parameter, synthetic=True)
     synthetic, model = study.synthetic, study.data(scene)[0]
-    key: Any = ("coverage", encode(study), scene.beam, scene.slider, scene.drive, repeats)  # of all its parameters
-    if key not in cache.motors:
-        data = synthetic.true, synthetic.noise
-        cache.motors[key] = fit.coverage(model, study.parameters, *data, repeats=repeats, seed=synthetic.seed)
-    return float(cache.motors[key][parameter])
+    of: Any = (model, study.parameters, synthetic.true, synthetic.noise)
+    key = "coverage", encode(study), scene.beam, scene.slider, scene.drive, repeats  # of all its parameters
+    return float(cache.once(key, lambda: fit.coverage(*of, repeats=repeats, seed=synthetic.seed))[parameter])
 
 
 @quantity("study.value", unit="SI", reads=(*TABLES, *OWN), devices=True)

@@ -69,16 +69,13 @@ def run_page(run: "RunResult", command: str = "") -> str:
         texts = ["" if margin.level == "trusted" or text.lower() in headline.lower() else text for text in texts]
         rows.append((margin.level, margin.text, *map(plain, limits), *texts))
     reasons = [Table("Margins", columns, rows[:WORST]), Table(REST, columns, rows[WORST:])]
-    gates = gates_table(run)
     skipped = Table("Not run", [Column("what"), Column("why")], [(part.what, part.why) for part in run.skipped])
-    whys = {gate.reason: gate.gate.why for gate in run.failed}  # their reasons stand above
-    gate_rows = [(*row[:-1], whys.get(row[-1], row[-1])) for row in gates.rows]
     sections = [
         Section("margins", "Margins", tables=[table for table in reasons if table.rows]),
         Section("caveats", "Caveats", caveats=listed),
         Section("speeds", SPEEDS, tables=speeds),
         *(_study_section(run, name) for name in run.results),
-        Section("gates", "Gates", gates_sentence(run), tables=[replace(gates, rows=gate_rows)] * bool(run.gates)),
+        Section("gates", "Gates", gates_sentence(run), tables=[gates_table(run)] * bool(run.gates)),
         Section("skipped", "Not run", tables=[skipped] * bool(run.skipped), folded=True),
         Section("inputs", "Inputs", code=_inputs(scene), folded=True),
     ]

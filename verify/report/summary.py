@@ -49,15 +49,14 @@ def expected(gate: Any) -> str:
 
 
 def gates_table(run: "RunResult") -> Table:
-    """All gates, failed ones first."""
-    gates = sorted(run.gates, key=lambda gate: gate.passed is not False)
+    """All gates, failed ones first, whose reasons the page has above."""
     rows: list[tuple[Any, ...]] = []
-    for gate in gates:
+    for gate in sorted(run.gates, key=lambda gate: gate.passed is not False):
         quantity = " ".join([gate.gate.quantity, *(f"{key}={value}" for key, value in gate.gate.arguments.items())])
         measured = None if gate.value is None else as_text(gate.value, ".7g")
         unit = "" if gate.unit == "1" else gate.unit
         row = VERDICTS[gate.passed], gate.id, quantity, expected(gate.gate), measured, unit, gate.fraction
-        rows.append((*row, gate.reason or gate.gate.why))
+        rows.append((*row, gate.gate.why if gate.passed is False else gate.reason or gate.gate.why))
     columns = [Column(name) for name in ("verdict", "gate", "quantity", "expected", "measured", "unit")]
     return Table("Gates", [*columns, Column("of tolerance", format=".3g", percent=True), Column("why")], rows)
 

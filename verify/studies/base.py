@@ -30,6 +30,7 @@ class Study(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     title: ClassVar[str] = ""  # heading on the page
     devices: ClassVar[bool] = False  # whether it accepts a drive with devices and shunts on the beam
     accepts: ClassVar[tuple[str, ...]] = ()  # those of the two that it accepts otherwise
+    reads: ClassVar[tuple[str, ...] | None] = None  # tables of a scene besides the beam; None where it may read any
     files: ClassVar[tuple[str, ...]] = ()  # fields that are paths, relative to the folder of the scene file
 
     @property
@@ -75,10 +76,7 @@ def studies_of(scene: Scene) -> list[tuple[str, Study]]:
 
 def result_of(name: str, scene: Scene, cache: SolutionCache, progress: Progress = lambda step: None) -> Result:
     """The result of a study of the scene, computed once for gates and report. Raises InputError without the study."""
-    stored = cache.motors.get(("study", name))
-    if stored is None or stored[0] is not scene:
-        study = dict(studies_of(scene)).get(name)
-        if study is None:
-            raise InputError(f"study = {name!r} is not in the scene: add [{name}]")
-        stored = cache.motors["study", name] = scene, study.run(scene, cache, progress)
-    return stored[1]
+    study = dict(studies_of(scene)).get(name)
+    if study is None:
+        raise InputError(f"study = {name!r} is not in the scene: add [{name}]")
+    return cache.once(("study", name, id(scene)), lambda: (scene, study.run(scene, cache, progress)))[1]

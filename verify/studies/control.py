@@ -35,6 +35,7 @@ class Control(ControlOptions, Study, frozen=True, kw_only=True, forbid_unknown_f
     """A motor whose slider is controlled in speed or position."""
 
     name, title = "control", "The controlled motor"
+    reads = ("drive", "slider", "motion")
 
     def check(self, scene: Scene) -> None:
         """Raise InputError without forces."""

@@ -59,6 +59,7 @@ class Convergence(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields
     """Frequency errors of a few modes over several sizes, every rule of the models side by side."""
 
     name, title = "convergence", "Convergence"
+    reads = ()
 
     modes: Annotated[Counts, Meta(description="Mode numbers, from 1.")] = (1, 3, 5)
     counts: Annotated[Counts, Meta(description="Numbers of segments and of elements.")] = (10, 20, 40, 80)

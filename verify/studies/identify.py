@@ -139,14 +139,14 @@ class Identify(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def fitted(self, scene: Scene, cache: SolutionCache) -> tuple[Model, Array, Fit]:
         """(model, data, fit), computed once. Raises InputError."""
-        key: Any = ("identify", msgspec.json.encode(self), scene.beam, scene.slider, scene.drive)
-        if key not in cache.motors:
+
+        def fitted() -> tuple[Model, Array, Fit]:
             model, data = self.data(scene)
             true = self.synthetic.true if self.synthetic else {}
             start = {name: value for name, value in true.items() if name not in self.parameters} | self.start
-            result = fit(model, data, self.parameters, start=start, noise=self.noise, profiles=self.profiles)
-            cache.motors[key] = model, data, result
-        return cache.motors[key]  # type: ignore[no-any-return]
+            return model, data, fit(model, data, self.parameters, start=start, noise=self.noise, profiles=self.profiles)
+
+        return cache.once(("identify", msgspec.json.encode(self), scene.beam, scene.slider, scene.drive), fitted)
 
     def run(self, scene: Scene, cache: SolutionCache, progress: Progress) -> Result:
         """Fit the parameters. Raises InputError."""

@@ -52,6 +52,7 @@ class LargeMotion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The beam on the moving base of [base], by rigid links and by nonlinear elements."""
 
     name, title = "large-motion", "The beam on a moving base"
+    reads = ("base", "drive")
 
     links: Annotated[int, Meta(ge=2, le=1000, description="Rigid links, and twice as many.")] = COUNTS["segment"]
     elements: Annotated[int, Meta(ge=2, le=1000, description="Nonlinear elements, and twice as many.")] = COUNTS["fem"]

@@ -61,6 +61,7 @@ class Motion(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The driven beam in time with the scene's slider; also the settings of quantities in time."""
 
     name, title, accepts = "motion", "The slider", ("drive.shunt",)
+    reads = ("drive", "slider", "motion")
 
     duration: Annotated[float, unit("s"), Meta(description="Duration, s.")] = 1e-3
     start: Annotated[Start, Meta(description="Beam at the start: at rest or in its steady state.")] = "rest"

@@ -17,7 +17,7 @@ from verify.formatting import unit_of, with_error, with_unit
 from verify.linear.registry import MODELS
 from verify.motor import curves
 from verify.motor.steady_state import PERIODS, MotorCase, SteadyState, seconds_per_period, steady_state, surface_motion
-from verify.quantities.motor import MotorOptions, cached
+from verify.quantities.motor import MotorOptions
 from verify.quantities.options import ModelName
 from verify.report.result import Column, Figure, Result, Table
 from verify.settings import Start
@@ -88,6 +88,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A slider that may leave the beam: at prescribed speeds, free, started, stopped and reversed."""
 
     name, title, accepts = "motor", "The motor", ("drive.shunt",)
+    reads = ("drive", "slider", "motion")
 
     models: Annotated[tuple[str, ...], Meta(min_length=1, description="Models.")] = ("analytic", "segment", "fem")
     count: Annotated[int, Meta(ge=2, le=250, description="Segments and elements; by default within 1 %.")] | None = None
@@ -160,7 +161,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
             progress(f"{what}, {name}, {allowed.text()}")
 
         step("stall force")
-        still: SteadyState = cached(cache, steady_state, case, 0.0, allowed.most)
+        still: SteadyState = cache.call(steady_state, case, 0.0, allowed.most)
         crest = copysign(surface_motion(case)[1], still.means.force)
         speeds = [at.speed for at in like] or [crest * k / (self.speeds - 1) for k in range(self.speeds)]
         curve = [still]
@@ -178,7 +179,7 @@ class Motor(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
         allowed.figures = 0
         step("free run")
         begun = replace(case, start=self.start, soft_start_periods=self.soft_start_periods)
-        free, stop, reversal = cached(cache, curves.transient, begun, self.periods), None, None
+        free, stop, reversal = cache.call(curves.transient, begun, self.periods), None, None
         rings = case.slider.coupling == "two-way"
         begin = free.time_constant()
         if free.run.statistics.finished and self.start == "steady":

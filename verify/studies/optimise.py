@@ -344,8 +344,7 @@ def _finer(variants: Variants, values: dict[str, float]) -> tuple[Variants, list
 
 def _refinements(name: str, arguments: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     """(arguments, label) of a quantity on finer models, the finest first."""
-    fields = msgspec.structs.fields(QUANTITIES[name].schema)
-    settings = {entry.name: entry.default for entry in fields if not entry.required} | arguments
+    settings = QUANTITIES[name].with_defaults(arguments)
     model, count, steps = settings.get("model", ""), settings.get("count"), settings.get("steps_per_period")
     exact = {key: value for key, value in arguments.items() if key != "count"} | {"model": EXACT}
     finer = [(exact, EXACT)] if model in MODELS and MODELS[model].sized else []

@@ -36,6 +36,7 @@ class Spectrum(Rules, Study, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Frequency errors of modes 1 to `modes` at one size, every rule of the models side by side."""
 
     name, title = "spectrum", "Error spectrum"
+    reads = ()
 
     modes: Annotated[int, Meta(ge=1, le=10_000, description="Number of modes, from the first.")] = 22
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None

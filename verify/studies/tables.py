@@ -177,8 +177,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cach
     quantity = QUANTITIES.named(name)
     if "beam" not in quantity.reads:
         return []
-    fields, groups = msgspec.structs.fields(quantity.schema), quantity.bind(arguments).values()
-    values = {field.name: field.default for field in fields if not field.required} | dict(arguments)
+    values, groups = quantity.with_defaults(arguments), quantity.bind(arguments).values()
     mode, hertz = values.get("mode"), values.get("frequency_hz")
     if hertz is None and "drive" in quantity.reads and scene.drive is not None:
         hertz = scene.drive.frequency_hz
@@ -189,8 +188,7 @@ def quantity_margins(name: str, arguments: Mapping[str, Any], scene: Scene, cach
     unit = quantity.unit in ("1", "deg", "Hz") and values.get("drive") is not None
     at["driven"] = "drive" in quantity.reads and not unit and not name.startswith("chain.")
     if "slider" in quantity.reads and scene.slider is not None:
-        runs = [*cache.motions.values(), *(entry.run for entry in cache.motors.values() if hasattr(entry, "run"))]
-        at["runs"] = [(MODELS[run.model].title, run) for run in runs if run.coupling is not None]
+        at["runs"] = [(MODELS[run.model].title, run) for run in cache.runs if run.coupling is not None]
         moved = (group.of(scene) for group in groups if hasattr(group, "time_step"))
         at["slider"] = next(moved, scene.slider) if at["runs"] else None
     if name.endswith(TRUE_OF_ANY_THEORY) or not (isinstance(mode, int) or hertz):
@@ -209,10 +207,9 @@ def premises(scene: Scene, cache: SolutionCache, reads: Collection[str] = TABLES
     """Margins of what results from these tables of a scene rest on, computed once: units, drive, slider's sag."""
     if "beam" not in reads:
         return ()
-    key = "premises", "drive" in reads, "slider" in reads
-    if key not in cache.motors:
-        cache.motors[key] = tuple(scene_margins(scene, cache, driven=key[1], slider=scene.slider if key[2] else None))
-    return cache.motors[key]  # type: ignore[no-any-return]
+    driven, slider = "drive" in reads, scene.slider if "slider" in reads else None
+    key = "premises", driven, "slider" in reads
+    return cache.once(key, lambda: tuple(scene_margins(scene, cache, driven=driven, slider=slider)))
 
 
 def figure_margins(

@@ -50,6 +50,7 @@ class Wave(Study, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The steady wave of the scene's drive, measured in the window [L/4, 3L/4]."""
 
     name, title = "wave", "The driven beam"
+    reads = ("drive",)
 
     theory: Theory = DEFAULT.theory
     count: Annotated[int, Meta(ge=1, description="Segments and elements; by default within 1 %.")] | None = None

@@ -130,9 +130,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
 
 def driven(case: DrivenCase, cache: "SolutionCache") -> HarmonicField:
     """The field of a case, computed once per cache. Raises InputError."""
-    if case not in cache.fields:
-        cache.fields[case] = case.field(case.acting, case.frequency_hz)
-    return cache.fields[case]
+    return cache.once(("field", case), lambda: case.field(case.acting, case.frequency_hz))
 
 
 class UnitWaves(msgspec.Struct, frozen=True, eq=False):
