@@ -24,44 +24,29 @@ from verify.dynamics.state import DONE, END, HALF, MIDDLE, NOT_FINITE, OFF_PIECE
 from verify.dynamics.surface import SIMPSON, evaluate_surface, find_pieces, set_start_speeds
 from verify.jit import inline, jit
 
-CORRECTIONS = 20
-"""Largest number of marches of a step before it is not converged."""
-AGREED = 1e-9
-"""Tolerance of the change of a force between two marches, over the load."""
-STALE = 3
-"""Number of marches of a step after which the response is computed anew: that takes a march for every force."""
-BUDGET = 1_000_000_000
-"""Largest number of steps of one march."""
+CORRECTIONS = 20  # Largest number of marches of a step before it is not converged
+AGREED = 1e-9  # Tolerance of the change of a force between two marches, over the load
+STALE = 3  # Number of marches of a step after which the response is computed anew: that takes a march for every force
+BUDGET = 1_000_000_000  # Largest number of steps of one march
 
 
 class Chain(NamedTuple):
     """The chain under the sliders."""
 
     surface: Surface
-    limits: Array
-    """(2,), ends of the surface, m from the first slider's start."""
-    load: float
-    """Scale of the contact forces, N."""
-    model: Model
-    """Two-way with dead loads at the far joints in its last rows."""
+    limits: Array  # (2,), ends of the surface, m from the first slider's start
+    load: float  # Scale of the contact forces, N
+    model: Model  # Two-way with dead loads at the far joints in its last rows
     tableau: Tableau
     march: State
-    n: int
-    """Number of coordinates: N of rigid links, 2 N + 2 of stretching ones."""
-    substep: float
-    """Step of the march, s."""
-    states: Array
-    """States of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size)."""
-    probe: Array
-    """(2, y.size), states with a unit force in addition."""
-    ends: Array
-    """(2,), times of the half steps."""
-    forces: Array
-    """(points, 2), tangential and normal force on sliders and feet in the march."""
-    marches: Indices
-    """(1,), marches of the last step."""
-    before: Bodies
-    """Sliders and feet at the start of the step."""
+    n: int  # Number of coordinates: N of rigid links, 2 N + 2 of stretching ones
+    substep: float  # Step of the march, s
+    states: Array  # States of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size)
+    probe: Array  # (2, y.size), states with a unit force in addition
+    ends: Array  # (2,), times of the half steps
+    forces: Array  # (points, 2), tangential and normal force on sliders and feet in the march
+    marches: Indices  # (1,), marches of the last step
+    before: Bodies  # Sliders and feet at the start of the step
 
 
 @inline

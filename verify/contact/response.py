@@ -8,8 +8,7 @@ from verify.arrays import Array
 from verify.contact.state import Response
 from verify.jit import FAST, inline
 
-TANGENTIAL, NORMAL = 0, 1
-"""Directions, rows of `shapes`; the responses to them are two rows further."""
+TANGENTIAL, NORMAL = 0, 1  # Directions, rows of `shapes`; the responses to them are two rows further
 
 
 @inline(fastmath=FAST)

@@ -13,15 +13,11 @@ from verify.linear.time_basis import Ratio, TimeBasis
 from verify.problem.beam import Beam, PointLoad
 from verify.validation import check_number
 
-RESONANCE = 1e-9
-"""Relative distance to an undamped resonance within which a drive is an error."""
+RESONANCE = 1e-9  # Relative distance to an undamped resonance within which a drive is an error
 CONSTANT = np.array([1.0])
-SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
-"""3 p^2 - 2 p^3: from 0 to 1 with zero slope at both ends."""
-SLOW = 0.5
-"""|i omega - lambda| T below which the forced part is a power series: the closed form has cancellation."""
-SERIES = 12
-"""Additional powers of that series: SLOW^12 / 12! is rounding."""
+SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])  # 3 p^2 - 2 p^3: from 0 to 1 with zero slope at both ends
+SLOW = 0.5  # |i omega - lambda| T below which the forced part is a power series: the closed form has cancellation
+SERIES = 12  # Additional powers of that series: SLOW^12 / 12! is rounding
 
 
 class Rows(msgspec.Struct, frozen=True, eq=False, kw_only=True):

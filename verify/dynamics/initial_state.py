@@ -17,8 +17,7 @@ of its surface, so that a few iterations end in practice."""
 SETTLED = 1e-14
 """Change of the surface, over its largest displacement or that by all forces in one sense where those of a clasp
 cancel, at which an equilibrium is at its rounding."""
-CLOSE = 1e-9
-"""The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there."""
+CLOSE = 1e-9  # The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there
 
 
 def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:

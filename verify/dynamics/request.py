@@ -29,15 +29,12 @@ from verify.validation import as_tuple, check_number, check_type
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 """Least number of time steps per drive period. For feet it is prime, so that equally spaced points on a wave do not
 all reverse their friction in the same steps."""
-FEET_MODES = 80
-"""Default number of modes of the exact beam under feet."""
+FEET_MODES = 80  # Default number of modes of the exact beam under feet
 COARSEST = 0.25
 """Largest step of a slider in drive periods: Simpson's rule misses (pi/4)^4/180 = 0.2 % of a surface speed there."""
-MOST_PERIODS = 1e12
-"""Number of drive periods after which rounding of the phase is 1e-3 rad."""
+MOST_PERIODS = 1e12  # Number of drive periods after which rounding of the phase is 1e-3 rad
 MOST_STEPS = 2e9
-KEEP = Keep()
-"""Recorded output by default: no deflection, 201 times."""
+KEEP = Keep()  # Recorded output by default: no deflection, 201 times
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):

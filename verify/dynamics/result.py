@@ -10,8 +10,7 @@ from verify.formatting import one_line
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
-END = "end"
-"""Value of `Statistics.stopped` of a complete run."""
+END = "end"  # Value of `Statistics.stopped` of a complete run
 NONE, NO_EVENTS, NO_CIRCUITS, NAN = np.empty(0), np.empty((0, 4)), np.empty((0, 0)), float("nan")
 
 

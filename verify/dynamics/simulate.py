@@ -17,8 +17,7 @@ from verify.dynamics.validity import margins_of
 from verify.problem.beam import Beam
 from verify.settings import Start
 
-CLOSED_FORM_ROWS = 2000
-"""Number of times evaluated at once."""
+CLOSED_FORM_ROWS = 2000  # Number of times evaluated at once
 
 
 @one_blas_thread()

@@ -28,11 +28,9 @@ WORKS = (
     "normal_on_beam",
 )
 """Sums of the engine by term of `EnergyBalance`."""
-SAMPLES = SAMPLE.names or ()
-"""Samples of the engine by field of `Motion`."""
+SAMPLES = SAMPLE.names or ()  # Samples of the engine by field of `Motion`
 SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *SAMPLES)
-FOOT_STATE = ("height", "velocity_z", "pitch", "pitch_rate")
-"""Columns of `ContactState.feet`."""
+FOOT_STATE = ("height", "velocity_z", "pitch", "pitch_rate")  # Columns of `ContactState.feet`
 Progress = Callable[[float], None]
 
 

@@ -12,10 +12,8 @@ from verify.contact.state import SPRING, Bodies, Kind, Records, Response
 from verify.dynamics import state
 from verify.dynamics.linear_system import Stage
 
-CHUNK = 20_000
-"""Number of steps between checks for an interrupt."""
-EVENTS = 20_000
-"""Capacity of the event log."""
+CHUNK = 20_000  # Number of steps between checks for an interrupt
+EVENTS = 20_000  # Capacity of the event log
 RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step.
 

@@ -34,8 +34,7 @@ GROWTH, SHRINK, SAFETY = 1.5, 0.5, 0.8
 """A step changes by at most these factors, since the acceleration is that of a time that depends on it."""
 LEAST = 1e-9  # step over the duration at which the run gives up
 
-SMALL = 1e-12
-"""Energy over EI/L of a tip that moves by a millionth of the length."""
+SMALL = 1e-12  # Energy over EI/L of a tip that moves by a millionth of the length
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -35,8 +35,7 @@ from verify.validation import check_integer, check_number
 BAND = 7  # an element couples two nodes of four values
 FINE = 16  # parts of an element for splines of the shape at rest: their error, of order 4 too, is 1e-5 of the element's
 RESTRAINT = 0.1  # part of EA at four points, in EI/l^2: its error is far below that of bending
-QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
-"""Rotation by 90 degrees."""
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # Rotation by 90 degrees
 
 
 class Forces(NamedTuple):
@@ -56,8 +55,7 @@ class Forces(NamedTuple):
         return Forces(share * self.tip, share * self.moment, share * self.follower, share * self.gravity)
 
 
-NONE = Forces()
-"""No loads."""
+NONE = Forces()  # No loads
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,8 +20,7 @@ from verify.problem.device import Device
 from verify.settings import DEFAULT, check_setting
 from verify.validation import as_tuple, check_integer, check_type
 
-Devices: TypeAlias = Device | Sequence[Device]
-"""One device, or several."""
+Devices: TypeAlias = Device | Sequence[Device]  # One device, or several
 
 VERBS = ("modes", "harmonic", "imposed", "receptance", "time_basis", "buckling_load")
 """Methods of a model that compute."""

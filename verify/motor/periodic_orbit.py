@@ -16,8 +16,7 @@ from verify.formatting import one_line
 from verify.motor.steady_state import MotorCase
 
 ROUNDS = 12
-DIFFERENCE = 1e-4
-"""Step of the difference quotients, over the scale of a coordinate."""
+DIFFERENCE = 1e-4  # Step of the difference quotients, over the scale of a coordinate
 REPEATS = 1e-3
 """Largest residual, over the scale of a coordinate; impacts on dashpots are discontinuous in the time step."""
 

@@ -27,8 +27,7 @@ _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 """Powers of the distance from an end in the moments due to distant loads."""
 _FOUR_JOINTS = np.array([[-2, 6, -6, 2], [12, -30, 24, -6], [-23, 39, -21, 5], [14, -5, 4, -1]]) / 12.0
 """L_j + L_j''/12 of four joints (columns), L_j cubic Lagrange polynomials: coefficients of s^3, s^2, s, 1 (rows)."""
-_ROUNDING = 1e-10
-"""Relative singular value below which the alignment is rounding, as of bodies exactly a link apart."""
+_ROUNDING = 1e-10  # Relative singular value below which the alignment is rounding, as of bodies exactly a link apart
 
 
 def link_at(chain: Chain, positions: Array) -> tuple[Indices, Array]:
