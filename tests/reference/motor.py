@@ -13,8 +13,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from tests.reference.slider import smooth
-
 # --- a mass on a surface that shakes as A sin theta; heights over A, speeds over A omega, times in radians
 
 
@@ -158,47 +156,6 @@ class OneWay:
     def pushed(self, t, s, normal, along):
         """Rates of the states of the surface itself: none."""
         return ()
-
-
-class Modes:
-    """A two-way coupled beam: modes of unit mass, forces F cos(omega t + phase) that grow over `grow` seconds."""
-
-    def __init__(self, own, shape, damping, forces, omega, half, grow):
-        self.own, self.shape, self.damping, self.omega, self.half, self.grow = own, shape, damping, omega, half, grow
-        self.forces = [(f.amplitude, np.deg2rad(f.phase_deg), shape(f.position, 0)) for f in forces]
-        self.beam = 2 * len(own)
-
-    def lifted(self, q, x):
-        """Derivatives of w(X) by the modes, which are the modal forces of a unit force across."""
-        here = x + self.half * (q @ self.shape(x, 1))
-        return self.shape(here, 0) + (q @ self.shape(here, 1)) * self.half * self.shape(x, 1)
-
-    def lying(self, x, load):
-        """(q, w(X)) at rest under a load at x."""
-        q = np.zeros(len(self.own))
-        for _ in range(60):
-            q = -load * self.lifted(q, x) / self.own**2
-        return q, q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
-
-    def below(self, t, s):
-        """The surface below the body."""
-        q, qd, body = np.split(s, [self.beam // 2, self.beam])
-
-        def at(x, t):
-            flat, tilted = self.shape(x, 0), self.shape(x, 1)
-            return q @ flat, qd @ flat, q @ tilted, qd @ tilted, q @ self.shape(x, 2)
-
-        return surface(at, body[X], t, self.half)
-
-    def pushed(self, t, s, normal, along):
-        """Rates of q and q_t under the body's reaction, which acts on the material below it."""
-        q, qd, body = np.split(s, [self.beam // 2, self.beam])
-        here = body[X] + self.half * (q @ self.shape(body[X], 1))
-        flat, tilt = self.shape(here, 0), q @ self.shape(here, 1)
-        dragged = (tilt * flat - self.half * self.shape(here, 1)) / np.sqrt(1.0 + tilt * tilt)
-        push = smooth(t / self.grow) * sum(f * cos(self.omega * t + turn) * load for f, turn, load in self.forces)
-        push = push - 2.0 * self.damping * self.own * qd - self.own**2 * q
-        return np.concatenate([qd, push - normal * self.lifted(q, body[X]) - along * dragged])
 
 
 # --- a body with a single point of contact
@@ -353,20 +310,6 @@ def _terminal(function, direction):
 
     end.terminal, end.direction = True, direction
     return end
-
-
-class Resting(Rider):
-    """A Point on a hard contact that it never leaves: N = load + m times the acceleration of the surface below it."""
-
-    def force(self, t, s):
-        """N."""
-        rates = []
-        for side in (1.0, -1.0):
-            there = s.copy()
-            there[X] += side * self.tick * s[V]
-            _, rise, tilt, _ = self.on.below(t + side * self.tick, there)
-            rates.append(rise + tilt * s[V])
-        return self.p.load + self.p.mass * (rates[0] - rates[1]) / (2.0 * self.tick)
 
 
 # --- a rigid foot of several points
