@@ -13,13 +13,12 @@ from verify.arrays import Array, Indices
 from verify.chain import rigid_links
 from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, Model, State, Tableau, march
-from verify.contact.response import NORMAL, TANGENTIAL, add_response, product
+from verify.contact.points import NORMAL, TANGENTIAL, add_response, product
 from verify.contact.solver import solve
 from verify.contact.state import SPRING, Bodies, Kind, Response
-from verify.dynamics.columns import set_mean_rates
+from verify.dynamics.columns import set_mean_rates, shape_of
 from verify.dynamics.integrator import are_finite, begin_bodies, close_step
 from verify.dynamics.recording import sample
-from verify.dynamics.shapes import shape_of
 from verify.dynamics.state import DONE, END, HALF, MIDDLE, NOT_FINITE, OFF_PIECES, RATE, START, VALUE, Journal, Surface
 from verify.dynamics.surface import SIMPSON, evaluate_surface, find_pieces, set_start_speeds
 from verify.jit import inline, jit

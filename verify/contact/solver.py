@@ -11,8 +11,7 @@ from verify.contact import laws
 from verify.contact.active_sets import SETTLED, revise_limits, solve_active_sets
 from verify.contact.normal import set_normal_forces
 from verify.contact.one_way import solve_one_way_friction
-from verify.contact.points import set_friction
-from verify.contact.response import NORMAL, TANGENTIAL, own_product, product
+from verify.contact.points import NORMAL, TANGENTIAL, own_product, product, set_friction
 from verify.contact.state import BILATERAL, HOLDS, SLIDES, SPRING, Bodies, Kind, Record, Response
 from verify.jit import inline, jit, once
 

@@ -7,9 +7,16 @@ from verify.contact import laws
 from verify.contact.points import slip_of
 from verify.contact.solver import solve
 from verify.contact.state import BILATERAL, SPRING, Bodies, Kind, Record, Response
-from verify.dynamics.columns import apply_forces, filter_rates, rotate_half, set_factors, set_mean_rates, shift_factors
+from verify.dynamics.columns import (
+    apply_forces,
+    filter_rates,
+    rotate_half,
+    set_factors,
+    set_mean_rates,
+    set_response,
+    shift_factors,
+)
 from verify.dynamics.recording import add_sums, sample, write_events
-from verify.dynamics.shapes import set_response
 from verify.dynamics.state import (
     DONE,
     END,

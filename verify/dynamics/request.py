@@ -11,9 +11,8 @@ from msgspec.structs import replace
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of, step_of
-from verify.dynamics.circuits import check_circuits
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, check_damping
+from verify.dynamics.excitation import CONSTANT, check_circuits, check_damping
 from verify.dynamics.free_vibration import FreeVibration
 from verify.dynamics.linear_system import Growth, Stage, cut
 from verify.dynamics.result import EndState, Motion
@@ -292,8 +291,8 @@ def _check_continued(before: EndState, beam: Beam, model: str, count: int | None
         raise InputError(f"start: its slider {before.off}, continue a run whose slider did not")
     if len(sliders) != len(before.starts):
         raise InputError(f"start has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
-    states = zip(sliders, before.starts, before.contact.sliders.tolist(), before.sliders, strict=True)
-    for slider, first, (travelled, speed), earlier in states:
+    moved = before.contact.sliders[["x", "v"]].tolist()
+    for slider, first, (travelled, speed), earlier in zip(sliders, before.starts, moved, before.sliders, strict=True):
         own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
         for name, (value, known) in zip(("position", "speed"), own, strict=True):
             if value not in known:

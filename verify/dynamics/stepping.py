@@ -257,11 +257,6 @@ class Run:
         self.left = True
 
 
-def of_all(records: Records) -> dict[str, float]:
-    """Sums of the fields of records of floats, by name."""
-    return {name: float(records[name].sum()) for name in records.dtype.names or ()}
-
-
 def response_of(assembly: Assembly, columns: int) -> Response | None:
     """Working space of the response of a beam of so many columns; None with one-way coupling."""
     n = len(assembly.points)

@@ -85,8 +85,8 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
 
-def margins_of(request: Request, stage: Stage) -> Margins:
-    """Margins of a run with last stage `stage`, except those that depend on time steps.
+def margins_of(request: Request, stage: Stage, contact_rate: float = 0.0) -> Margins:
+    """Margins of a run with last stage `stage` and the fastest rate of its contact, rad/s.
 
     `lift_off` of point sliders is that of the run.
     """
@@ -96,22 +96,19 @@ def margins_of(request: Request, stage: Stage) -> Margins:
         falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
         lift_off = falling / request.gravity if request.gravity else inf
     square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
-    turns = abs(lossless_wavenumber(beam, hertz)) * beam.length
-    return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
-
-
-def presliding(request: Request) -> float | None:
-    """`Margins.presliding`, the largest of all feet."""
-    largest = 0.0
+    turns, slips = abs(lossless_wavenumber(beam, hertz)) * beam.length, list[float | None]()
     for slider, start in zip(request.sliders, request.starts, strict=True):
-        contact, section = slider.contact, section_at(request.beam, start)
+        contact, section = slider.contact, section_at(beam, start)
         if contact is None or contact.hard:
-            return None
+            slips.append(None)
+            continue
         compliances = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
         if all(along for _, along in compliances):
-            k = travelling_wavenumber(section, request.frequency_hz)
-            if k is None:
-                return None
-            ratio = max(across / along for across, along in compliances)
-            largest = max(largest, slider.mu * ratio / (k * section.surface_distance))
-    return largest
+            k, ratio = travelling_wavenumber(section, hertz), max(across / along for across, along in compliances)
+            slips.append(None if k is None else slider.mu * ratio / (k * section.surface_distance))
+    return Margins(
+        lift_off=lift_off,
+        nonlinearity=float(turns**2 * square),
+        presliding=None if None in slips or not request.feet else max((one for one in slips if one), default=0.0),
+        contact_step=contact_rate * stage.steps.dt,
+    )
