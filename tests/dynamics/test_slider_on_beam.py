@@ -12,7 +12,7 @@ from verify.dynamics.result import Motion
 from verify.errors import InputError
 from verify.problem.beam import Beam, PointForce
 from verify.problem.cross_section import Section
-from verify.problem.slider import Slider, changed
+from verify.problem.slider import Slider
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -58,23 +58,6 @@ def test_friction_opposes_slip_and_its_impulse_is_the_momentum(law):
     assert motion.mean_surface_speed == pytest.approx(
         np.trapezoid(motion.surface_speed, motion.times) / motion.duration, rel=1e-3, abs=1e-6
     )
-
-
-def test_steep_tanh_friction_tends_to_coulombs_law():
-    tanh, coulomb = (
-        run(changed(replace(HEAVY, coupling="one-way", mass=0.4), **law), 2000)
-        for law in ({"slope": 1e7}, {"law": "coulomb"})
-    )
-    assert tanh.displacement == pytest.approx(coulomb.displacement, rel=2e-3)
-    assert len(coulomb.events) > 0
-
-
-def test_a_sticking_slider_moves_with_the_surface():
-    """Held by mu N far above m a it follows the surface from the first step to the last."""
-    for coupling in ("one-way", "two-way"):
-        slider = Slider(mass=0.01, mu=0.9, law="coulomb", preload=900.0, position=0.19, coupling=coupling)
-        motion = run(replace(slider, normal="massless"), 2000)
-        assert motion.speed[1:] == pytest.approx(motion.surface_speed[1:], abs=2e-3 * abs(motion.surface_speed).max())
 
 
 def test_two_way_coupling_vanishes_with_the_mass_as_its_size_does():
