@@ -14,7 +14,7 @@ from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlid
 from verify.dynamics.contact_assembly import check_sliders
 from verify.dynamics.excitation import CONSTANT, check_circuits, check_damping
 from verify.dynamics.free_vibration import FreeVibration
-from verify.dynamics.linear_system import Growth, Stage, cut
+from verify.dynamics.linear_system import Stage, Steps, cut
 from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
@@ -50,7 +50,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     prescribed: tuple[PrescribedSlider, ...]
     starts: tuple[float, ...]  # Initial positions of the sliders, m; in a continued run those of the first run
     points: Array
-    pieces: tuple[Growth, ...]
+    pieces: tuple[tuple[Steps, Array], ...]  # Steps, and the amplitude of the forces as a polynomial of t / duration
     step: float | None
     before: EndState | None
     circuits: tuple[Mounted, ...]
@@ -82,13 +82,6 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return bool(self.sliders) and self.sliders[0].coupling == "two-way"
 
     @property
-    def sticks_in_several_ways(self) -> bool:
-        """Whether static friction above the kinetic one holds several rigid points of feet."""
-        holds = any(slider.mu_static is not None and slider.mu_static > slider.mu for slider in self.sliders)
-        points = [foot.points for slider in self.sliders for foot in slider.feet]
-        return self.feet and holds and sum(points) > 1
-
-    @property
     def gravity(self) -> float:
         """Least normal force over moving mass of the sliders, m/s^2; without sliders standard gravity."""
         return min((slider.effective_gravity for slider in self.sliders), default=GRAVITY)
@@ -105,8 +98,8 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         elif self.beam.loss_factor:
             notes.append(f"damping: loss factor {self.beam.loss_factor:g}")
         if len(self.pieces) > 1:
-            notes.append(f"forces grow over {sum(piece.steps.duration for piece in self.pieces[:-1]):.6g} s")
-            reached = float(np.sum(self.pieces[-2].coefficients))
+            notes.append(f"forces grow over {sum(steps.duration for steps, _ in self.pieces[:-1]):.6g} s")
+            reached = float(np.sum(self.pieces[-2][1]))
             if abs(reached - 1.0) >= 1e-9:
                 notes.append(f"forces jump from {reached:.6g} times their amplitude to all of it")
         return tuple(notes)
@@ -259,7 +252,9 @@ def check_steps(duration: float, step: float) -> None:
         )
 
 
-def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
+def _cut(
+    duration: float, grown: list[tuple[float, Array]], longest: float, samples: int
+) -> tuple[tuple[Steps, Array], ...]:
     """Time steps of the envelope's pieces and of the constant forces after them; samples in proportion to duration.
 
     At least one sample per piece. Raises InputError.
@@ -275,7 +270,7 @@ def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samp
     shares[-1] = samples - sum(shares[:-1])
     if shares[-1] < 1:
         shares = part_counts([seconds for seconds, _ in pieces], max(samples, len(pieces)))
-    return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
+    return tuple((cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
 
 
 def _check_continued(before: EndState, beam: Beam, model: str, count: int | None, sliders: Sequence[Slider]) -> None:

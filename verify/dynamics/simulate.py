@@ -129,8 +129,8 @@ def stages_from_rest(request: Request, basis: TimeBasis, damping: Ratio) -> list
     tail = basis.tail(forces, request.frequency_hz, damping) if basis.tail and forces else None
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
-    for piece in request.pieces:
-        unit, envelope = piece.steps.duration, piece.coefficients
+    for steps, envelope in request.pieces:
+        unit = steps.duration
         forced = forced_response(rows, request.omega, envelope, unit, origin)
         growth = np.pad(envelope, (0, forced.forward.shape[1] - len(envelope))) if tail else envelope
 
@@ -150,7 +150,7 @@ def stages_from_rest(request: Request, basis: TimeBasis, damping: Ratio) -> list
                 origin=origin,
                 unit_s=unit,
                 envelope=envelope,
-                steps=piece.steps,
+                steps=steps,
                 complex_rows=len(rows.rates) * bool(request.circuits),
                 readings=forced.drive_shapes(rows.readings) if request.circuits else NO_READINGS,
             )
@@ -190,7 +190,7 @@ def steady_stage(request: Request, basis: TimeBasis | None, damping: Ratio) -> S
         degree=degree,
         omega=harmonic.omega,
         origin=request.origin,
-        steps=request.pieces[-1].steps,
+        steps=request.pieces[-1][0],
         readings=np.array([steady], dtype=complex),
     )
     if basis is None:

@@ -100,7 +100,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         Raises InputError for a residual of the energy balance above its tolerance.
         """
         request, stages, (assembly, z) = self.request, self.stages, self._initial()
-        if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
+        # static friction above the kinetic one may hold several rigid points in more than one way
+        several = len(assembly.points) > 1 and any(assembly.sliders["mu_static"] > assembly.sliders["mu"])
+        if (request.feet and not several) or not request.two_way or request.step is not None:
             return step_control.checked(self.run(stages, assembly, z, progress), request, stages)
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
@@ -127,15 +129,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         recorded = self._marched(stages, z, assembly, progress)
         journal, sums, gained = recorded.journal, recorded.journal.sums, self._kinetic(assembly) - kinetic
         if request.start == "rest" and request.before is None:
-            still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+            # at rest on a beam at rest, whatever the sign of rounding
+            journal.samples["friction"][0, [slider.speed == 0.0 for slider in request.sliders]] = 0.0
         offsets = np.array(request.starts) - request.starts[0]
         mean = 1.0 / recorded.seconds if recorded.seconds > 0.0 else float("nan")
         notes, kept = list(self.notes), len(recorded.events)
-        if recorded.n_events > kept:
-            notes.append(f"events: the first {kept} of {recorded.n_events}")
-        if recorded.left:
-            notes.append("energy: work of the drive and losses of the beam until the load has left it")
+        notes += [f"events: the first {kept} of {recorded.n_events}"] * (recorded.n_events > kept)
+        notes += ["energy: work of the drive and losses of the beam until the load has left it"] * recorded.left
         margins, fall = self.margins, float(sums["max_fall"].max())
         if not request.feet:
             margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)

@@ -201,7 +201,9 @@ class _Run:
         state = model.rest if start is None else start
         now = self.begin(state, np.zeros_like(state) if start_rate is None else start_rate)
         instants, jerk, placed, rejected = [now], np.zeros_like(state), 0.0, 0
-        h = self._first_step(now, end)
+        # in the first step the initial acceleration moves the beam by the tolerance
+        size = abs(now.acceleration[:, 0]).max()
+        h = min(1e-2 * end, (self.tolerance * model.beam.length / size) ** 0.5 if size else 1e-3 * end)
         while now.time < end * (1.0 - 1e-12):
             h = min(h, end - now.time)
             # the acceleration belongs to t + (ALPHA_M - ALPHA_F) times the step before: move it to where this one does
@@ -220,11 +222,6 @@ class _Run:
             instants.append(now)
             progress(now.time / end)
         return self._motion(instants, times, rejected)
-
-    def _first_step(self, now: _Instant, end: float) -> float:
-        """The step in which the initial acceleration moves the beam by the tolerance, at most 1 % of the duration."""
-        size = abs(now.acceleration[:, 0]).max()
-        return min(1e-2 * end, (self.tolerance * self.model.beam.length / size) ** 0.5 if size else 1e-3 * end)
 
     def _motion(self, instants: list[_Instant], times: Array, rejected: int) -> NonlinearMotion:
         from scipy.interpolate import CubicHermiteSpline

@@ -25,7 +25,7 @@ from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce, PointLoad, PointMoment, is_lossless, rigid_lines
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
-from verify.validation import check_choice, check_number
+from verify.validation import check_choice, check_integer, check_number
 
 
 class DiscreteModel(BeamModel):
@@ -152,7 +152,12 @@ class DiscreteModel(BeamModel):
 
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes. Raises InputError for too many, within rounding, and for compression to buckling."""
-        self.check_n_modes(n_modes)
+        check_integer("n_modes", n_modes, 1)
+        if n_modes > self.n_elastic:
+            raise InputError(
+                f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
+                "modes, raise count"
+            )
         self.check_memory(n_modes)
         try:
             values, vectors = self.stable_system.modes(n_modes)
