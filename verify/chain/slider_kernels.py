@@ -16,7 +16,7 @@ from verify.chain.runge_kutta import KEPT, STEP, TIME, Model, State, Tableau, ma
 from verify.contact.points import NORMAL, TANGENTIAL, add_response, product
 from verify.contact.solver import solve
 from verify.contact.state import SPRING, Bodies, Kind, Response
-from verify.dynamics.columns import set_mean_rates, shape_of
+from verify.dynamics.columns import set_mean_rates, set_shapes
 from verify.dynamics.integrator import are_finite, begin_bodies, close_step
 from verify.dynamics.recording import sample
 from verify.dynamics.state import DONE, END, HALF, MIDDLE, NOT_FINITE, OFF_PIECES, RATE, START, VALUE, Journal, Surface
@@ -114,14 +114,11 @@ def set_chain_shapes(surface: Surface, bodies: Bodies, shapes: Array) -> None:
     """Tangential and normal speed of the surface at every point per unit rate of each column, in mid-step."""
     m = surface.table.shape[2]
     for i in range(bodies.points.shape[0]):
-        point, contact = bodies.points[i], bodies.contacts[i]
-        piece, slope = contact.piece, contact.slope
-        lever, side = point.lever / (surface.edges[piece + 1] - surface.edges[piece]), point.face * point.image
+        contact = bodies.contacts[i]
+        set_shapes(i, m, surface, bodies.points[i], contact, shapes)
         for j in range(m):
-            value, first, turn = shape_of(piece, j, contact.xi, contact.xi_point, surface.table)
-            shapes[TANGENTIAL, i, j] = (slope * value - lever * first) / math.sqrt(1.0 + slope * slope)
-            shapes[TANGENTIAL, i, m + j] = 1.0 if j < piece else contact.xi_point if j == piece else 0.0
-            shapes[NORMAL, i, j] = side * (value + slope * lever * turn)
+            along = contact.xi_point if j == contact.piece else 0.0
+            shapes[TANGENTIAL, i, m + j] = 1.0 if j < contact.piece else along
 
 
 @inline

@@ -6,16 +6,7 @@ take the force that lets none of them slip in the mean of the step.
 
 import math
 
-from verify.contact.state import (
-    EVENTS,
-    HOLDS,
-    SLIPS,
-    STICKS,
-    TURNS,
-    Path,
-    Record,
-    Slip,
-)
+from verify.contact.state import EVENTS, HOLDS, SLIPS, STICKS, TURNS, Path, Record, Slip
 from verify.jit import inline, jit, once
 
 CREEP = 1e-5
