@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of, step_of
+from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of
 from verify.dynamics.contact_assembly import check_sliders
 from verify.dynamics.excitation import CONSTANT, check_circuits, check_damping
 from verify.dynamics.free_vibration import FreeVibration
@@ -23,7 +23,7 @@ from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointLoad, check_frequency, is_lossless
 from verify.problem.slider import GRAVITY, Slider
-from verify.validation import as_tuple, check_number, check_type
+from verify.validation import as_tuple, check_number, check_type, python_scalar
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 """Least number of time steps per drive period. For feet it is prime, so that equally spaced points on a wave do not
@@ -179,7 +179,9 @@ def request_of(
     starts = starts or tuple(one.initial_position(beam) for one in sliders)
     if sliders:
         check_sliders(beam, sliders, starts)
-    step = step_of(step)
+    if step is not None and not isinstance(step, Step):
+        check_number("step", step, "seconds", above=0)
+    step = step if isinstance(step, Step) else Step(seconds=python_scalar(step))
     few = bool(sliders and sliders[0].contact) and not kind.sized
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and is_lossless(beam))
     return Request(

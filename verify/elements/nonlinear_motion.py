@@ -150,11 +150,6 @@ class _Run:
         driven = (self.drive * np.exp(1j * self.omega * time)).real.ravel()
         return model.vector(loads - inertia[..., 0]) + driven, centrifugal - by_state, gyroscopic
 
-    def begin(self, state: Array, rate: Array) -> _Instant:
-        """The first instant, in balance."""
-        forces = self.external(0.0, state, rate)[0] - self.model.vector(self.model.elastic(state)[0])
-        return _Instant(0.0, state, rate, self.model.solve(self.model.band(self.mass), forces))
-
     def step(self, now: _Instant, h: float, jerk: Array) -> tuple[_Instant, float] | None:
         """(next instant, error of the step over the tolerance); None where Newton's method does not converge.
 
@@ -199,7 +194,9 @@ class _Run:
         """Steps to the last time, interpolated to all."""
         model, end = self.model, float(times[-1])
         state = model.rest if start is None else start
-        now = self.begin(state, np.zeros_like(state) if start_rate is None else start_rate)
+        rate = np.zeros_like(state) if start_rate is None else start_rate
+        forces = self.external(0.0, state, rate)[0] - model.vector(model.elastic(state)[0])
+        now = _Instant(0.0, state, rate, model.solve(model.band(self.mass), forces))  # in balance
         instants, jerk, placed, rejected = [now], np.zeros_like(state), 0.0, 0
         # in the first step the initial acceleration moves the beam by the tolerance
         size = abs(now.acceleration[:, 0]).max()

@@ -304,10 +304,10 @@ class DiscreteModel(BeamModel):
         result = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, (omega, w2) in enumerate(zip(omegas.tolist(), omega2.tolist(), strict=True)):
             try:
-                response = self.stable_system.harmonic(loads, w2, self.lossy_stiffness(omega))
+                bent, moved, _ = self.stable_system.steady(loads, w2, self.lossy_stiffness(omega))
             except np.linalg.LinAlgError:
                 continue
-            result[i] = self.line(response)(read, 0)
+            result[i] = self.line(bent + moved)(read, 0)
         return result
 
     def _loads(self, acting: Sequence[PointLoad], blocked: Sequence[PointForce]) -> ComplexArray:

@@ -341,13 +341,6 @@ class StructuralSystem(FactoredSystem):
         bent, moved, forces = (part[:, :k] + 1j * part[:, k:] for part in parts)
         return bent, moved, forces
 
-    def harmonic(
-        self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()
-    ) -> Any:
-        """The response (n, k) of `steady` to loads (n, k), without constraints. Raises LinAlgError."""
-        bent, moved, _ = self.steady(loads, omega2, stiffness, devices)
-        return bent + moved
-
     def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
         """Raise LinAlgError within `RESONANCE` of a resonance, from the response (n, 1) to a random load.
 
