@@ -134,9 +134,11 @@ def test_feet_stay_up_to_the_static_limit_and_slide_under_the_kinetic_one(feet, 
         if runs:
             assert np.diff(run.speed[[-3, -1]])[0] == pytest.approx((pull - 0.4) / 0.05 * 5e-4, rel=0.02)
             assert run.friction[9:] == pytest.approx(np.full(8, -0.4), rel=0.01)
+            assert run.stick_fraction[9:].max() < 1e-12
         else:
             assert run.friction[1:] == pytest.approx(np.full(16, -pull), rel=1e-4)
             assert abs(run.displacement) < 1e-10
+            assert run.stick_fraction[1:].min() > 1.0 - 1e-12
 
 
 AT_REST = {

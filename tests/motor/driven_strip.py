@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from reference.motor import Waves, waves_of
 
 from tests.beams import PAPER as STRIP
-from verify import Contact, ExactModel, Excitation, Keep, PointForce, PrescribedSlider, Slider, simulate
+from verify import ExactModel, Excitation, Keep, PointForce, PrescribedSlider, simulate
 
 HERTZ = 4276.0
 OMEGA, PERIOD = 2.0 * np.pi * HERTZ, 1.0 / HERTZ
@@ -55,11 +55,3 @@ def on_strip(
         step=PERIOD / steps if steps else None,
         keep=Keep(samples=samples),
     )
-
-
-def slider_of(point, **own):
-    """The slider of a point of the reference, with further fields."""
-    given = {"mass": point.mass, "mu": point.mu, "slope": point.slope, "gravity": 0.0, "coupling": "one-way"}
-    given |= {"preload": point.load, "preload_stiffness": point.load_stiffness, "external_force": point.pull}
-    contact = Contact(stiffness=point.stiffness, damping=point.damping, tangential_stiffness=point.give)
-    return Slider(**{"law": "tanh" if point.slope else "coulomb", "contact": contact, **given, **own})

@@ -65,19 +65,6 @@ def one_point(**given):
     return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
 
 
-@pytest.mark.parametrize(
-    ("law", "slope", "mass"), [("coulomb", None, 0.04), ("tanh", 1e5, 0.04), ("coulomb", None, 8e-3)]
-)
-def test_a_motor_of_one_point_gives_the_same_in_the_default_steps_and_in_many(law, slope, mass):
-    few, many = (
-        one_point(steps_per_period=steps, slider={"law": law, "slope": slope, "mass": mass}) for steps in (61, 700)
-    )
-    speeds = [transient(one, 300).speed / crest_speed(one) for one in (few, many)]
-    forces = [steady_state(one, 0.0).means.force for one in (few, many)]
-    assert forces[0] == pytest.approx(forces[1], rel=0.01)
-    assert speeds[0] == pytest.approx(speeds[1], abs=0.006)
-
-
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
 def test_the_crest_speed_is_what_the_slider_sees_with_damping(model, count):
     slow, damped = (one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))

@@ -5,7 +5,7 @@ that speed, an elastic tangential contact a spring that relaxes to its limit of 
 surface is a piecewise cubic times modes: Hermite elements, or the spline through the joints of rigid links. The
 material under a point at x stands at X = x + (h/2) w'(x); a normal force acts square to the surface.
 
-From verify come value types alone. `python -m tests.reference.contact` computes the table of `tests/contact_grid.py`.
+From verify come value types alone. `python -m tests.reference.contact` computes the table of `tests/dynamics/test_contact_grid.py`.
 """
 
 import json

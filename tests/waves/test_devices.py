@@ -12,7 +12,6 @@ from tests import beams
 from tests.reference import transfer
 from verify import Device, ExactModel, HermiteModel, PointForce, PointMass, SegmentModel
 from verify.errors import InputError
-from verify.linear.field import phasor
 from verify.problem.device import of_impedance
 from verify.travelling_wave import DrivenCase, matched_device, measure
 from verify.waves.impedance_matching import ending
@@ -82,17 +81,6 @@ def test_segments_and_elements_with_devices_are_of_order_four(model, beam, devic
     errors = [off(field.deflection(x), exact) for field in fields]
     assert 3.4 < np.log2(errors[0] / errors[1]) < 4.6
     assert 1e-8 < errors[1] < (1e-3 if model is SegmentModel else 1e-4)
-
-
-@pytest.mark.parametrize("model", ["exact", "elements"])
-def test_a_dashpot_dissipates_the_power_of_the_forces(model):
-    device = Device(position=0.71, dashpot=3.1, stiffness=5200.0, mass=0.002)
-    field = MODELS[model](STRIP).harmonic(FORCES, 739.0, devices=device)
-    speeds = 1j * field.omega * field.deflection([force.position for force in field.forces])
-    power = np.array([0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(field.forces, speeds, strict=True)])
-    lost = 0.5 * 3.1 * abs(field.omega * field.deflection(0.71)[0]) ** 2
-    assert power[:2].sum() == pytest.approx(lost, rel=1e-9)
-    assert power[2] == pytest.approx(-lost, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,8 @@ from msgspec import Meta
 from verify.errors import InputError
 from verify.validation import unit, validate
 
-EPS0 = 8.8541878128e-12
-"""Permittivity of vacuum, F/m (CODATA 2018)."""
-Direction = Literal["33", "31"]
-"""Wave along the field, or across it."""
+EPS0 = 8.8541878128e-12  # Permittivity of vacuum, F/m (CODATA 2018)
+Direction = Literal["33", "31"]  # Wave along the field, or across it
 Form = Literal["mason", "klm", "circuit"]
 """Mason's three-port, the model of Krimholtz, Leedom and Matthaei, or the circuit of Butterworth and Van Dyke."""
 Stiffness = Annotated[float, unit("Pa"), Meta(description="cE, Pa")]

@@ -34,8 +34,7 @@ from verify.problem.point_attachments import PointMass, PointSpring
 from verify.problem.supports import FIXED, check_free
 from verify.validation import as_tuple, check_position
 
-QUASI_STATIC = 0.05
-"""Largest relative error of an actuator's reduction to a spring and a mass."""
+QUASI_STATIC = 0.05  # Largest relative error of an actuator's reduction to a spring and a mass
 
 
 class Mounted(msgspec.Struct, frozen=True, kw_only=True):
@@ -227,10 +226,8 @@ def as_moments(forces: Sequence[PointForce]) -> tuple[PointMoment, ...]:
 class QuasiStatic(Actuator, frozen=True, kw_only=True):
     """An actuator far below its resonance, whose spring and mass are part of the beam."""
 
-    force_factor: float
-    """B, N/V."""
-    capacitance: float
-    """C at rest, F."""
+    force_factor: float  # B, N/V
+    capacitance: float  # C at rest, F
 
     def port(self, omega: Any) -> Port:
         """The port at angular frequencies omega (rad/s), a number or (n,)."""

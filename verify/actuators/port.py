@@ -7,8 +7,7 @@ import msgspec
 
 from verify.arrays import ComplexArray
 
-Number = complex | ComplexArray
-"""A number, or one for each frequency, (n,)."""
+Number = complex | ComplexArray  # A number, or one for each frequency, (n,)
 
 
 class Port(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.chain.runge_kutta import ACCELERATION, Model
-from verify.chain.system import ChainSystem, circular
+from verify.chain.system import ChainSystem
 from verify.jit import inline, jit
 from verify.segments.chain import joint_masses
 
@@ -79,10 +79,8 @@ def accelerate(t: float, y: Array, out: Array, model: Model) -> None:
 def flatten(system: ChainSystem) -> Model:
     """The data of `accelerate`; its numbers are the components of gravity."""
     n, lengths = system.n_links, system.lengths
-    loads = [
-        (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
-        for p in system.loads
-    ]
+    loads = system.load_table
+    loads[:, 0] /= lengths[loads[:, 6].astype(int)]
     links = np.zeros((n + 1, 9))
     springs = system.axial_stiffness / lengths
     links[:-1, :FACTOR] = np.stack([lengths, system.masses, springs, system.stiffness, system.dashpots], axis=1)
@@ -94,5 +92,4 @@ def flatten(system: ChainSystem) -> Model:
             factor = coupling[j - 1] * reciprocal
             reciprocal = 0.0 if fixed and j == n else 1.0 / (diagonal[j] - factor * coupling[j - 1])
             links[j, FACTOR + 2 * axis : FACTOR + 2 * axis + 2] = factor, reciprocal
-    sheet, gravity = np.array(loads, dtype=float).reshape(len(loads), 7), np.array(system.gravity, float)
-    return Model(links, sheet, gravity, np.zeros((1, 1)), np.zeros((1, 1)))
+    return Model(links, loads, np.array(system.gravity, float), np.zeros((1, 1)), np.zeros((1, 1)))

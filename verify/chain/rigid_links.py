@@ -14,7 +14,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.chain.kinematics import place
 from verify.chain.runge_kutta import ACCELERATION, Model
-from verify.chain.system import ChainState, ChainSystem, circular
+from verify.chain.system import ChainState, ChainSystem
 from verify.errors import InputError
 from verify.jit import FAST, inline, jit
 from verify.problem.base_motion import FIXED
@@ -202,10 +202,8 @@ def flatten(system: ChainSystem, end: float = 0.0) -> Model:
         if (softest[:, system.stiffness > 0.0] <= 0.0).any():
             raise InputError(f"count = {n}: the axial force leaves no stiffness in a joint, give more links")
     own = [half, along, masses, *inertia, system.stiffness, system.dashpots, *weights, *losses]
-    loads = [
-        (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
-        for p in system.loads
-    ]
+    loads = system.load_table
+    loads[:, ARM] -= half[loads[:, LINK].astype(int)]
     if system.base is FIXED:
         base, piece = np.zeros((1, 14)), np.inf
         base[0, 1] = system.hub_rate
@@ -216,7 +214,7 @@ def flatten(system: ChainSystem, end: float = 0.0) -> Model:
     numbers = (piece, system.tip == "roller", system.axial_spring, 0.0, system.length, radius, follows, *system.gravity)
     return Model(
         np.array(np.stack(own, axis=1), dtype=float, order="C"),
-        np.array(loads, dtype=float).reshape(len(loads), 7),
+        loads,
         np.array(numbers, dtype=float),
         np.zeros((n + 1, UNIT + 1)),
         base,

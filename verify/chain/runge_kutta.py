@@ -46,12 +46,9 @@ class Tableau(NamedTuple):
 class State(NamedTuple):
     """State of a march, its control and working space."""
 
-    y: Array
-    """(2 n + m,), coordinates, rates, quadratures at `clock`[TIME]."""
-    k: Array
-    """(s + 3, y.size), derivatives of the stages, new and trial states."""
-    clock: Array
-    """(2,), TIME and STEP: fixed for a tableau without `weights`, else controlled."""
+    y: Array  # (2 n + m,), coordinates, rates, quadratures at `clock`[TIME]
+    k: Array  # (s + 3, y.size), derivatives of the stages, new and trial states
+    clock: Array  # (2,), TIME and STEP: fixed for a tableau without `weights`, else controlled
     control: Array
     counts: Indices
 
@@ -59,8 +56,7 @@ class State(NamedTuple):
 _named: Any = types.NamedTuple
 _model = _named((_table, _table, _vector, _table, _table), Model)
 _state = _named((_vector, _table, _vector, _vector, types.Array(types.int64, 1, "C")), State)
-ACCELERATION = types.void(types.float64, _vector, _vector, _model)
-"""accelerate(t, y, out, model)"""
+ACCELERATION = types.void(types.float64, _vector, _vector, _model)  # accelerate(t, y, out, model)
 MARCH = types.int64(
     types.FunctionType(ACCELERATION),
     _model,

@@ -13,55 +13,39 @@ from verify.arrays import Array, Indices
 from verify.chain import rigid_links
 from verify.chain.runge_kutta import DONE as MARCHED
 from verify.chain.runge_kutta import KEPT, STEP, TIME, Model, State, Tableau, march
-from verify.contact.response import NORMAL, TANGENTIAL, add_response, product
+from verify.contact.points import NORMAL, TANGENTIAL, add_response, product
 from verify.contact.solver import solve
 from verify.contact.state import SPRING, Bodies, Kind, Response
-from verify.dynamics.columns import set_mean_rates
+from verify.dynamics.columns import set_mean_rates, set_shapes
 from verify.dynamics.integrator import are_finite, begin_bodies, close_step
 from verify.dynamics.recording import sample
-from verify.dynamics.shapes import shape_of
 from verify.dynamics.state import DONE, END, HALF, MIDDLE, NOT_FINITE, OFF_PIECES, RATE, START, VALUE, Journal, Surface
 from verify.dynamics.surface import SIMPSON, evaluate_surface, find_pieces, set_start_speeds
 from verify.jit import inline, jit
 
-CORRECTIONS = 20
-"""Largest number of marches of a step before it is not converged."""
-AGREED = 1e-9
-"""Tolerance of the change of a force between two marches, over the load."""
-STALE = 3
-"""Number of marches of a step after which the response is computed anew: that takes a march for every force."""
-BUDGET = 1_000_000_000
-"""Largest number of steps of one march."""
+CORRECTIONS = 20  # Largest number of marches of a step before it is not converged
+AGREED = 1e-9  # Tolerance of the change of a force between two marches, over the load
+STALE = 3  # Number of marches of a step after which the response is computed anew: that takes a march for every force
+BUDGET = 1_000_000_000  # Largest number of steps of one march
 
 
 class Chain(NamedTuple):
     """The chain under the sliders."""
 
     surface: Surface
-    limits: Array
-    """(2,), ends of the surface, m from the first slider's start."""
-    load: float
-    """Scale of the contact forces, N."""
-    model: Model
-    """Two-way with dead loads at the far joints in its last rows."""
+    limits: Array  # (2,), ends of the surface, m from the first slider's start
+    load: float  # Scale of the contact forces, N
+    model: Model  # Two-way with dead loads at the far joints in its last rows
     tableau: Tableau
     march: State
-    n: int
-    """Number of coordinates: N of rigid links, 2 N + 2 of stretching ones."""
-    substep: float
-    """Step of the march, s."""
-    states: Array
-    """States of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size)."""
-    probe: Array
-    """(2, y.size), states with a unit force in addition."""
-    ends: Array
-    """(2,), times of the half steps."""
-    forces: Array
-    """(points, 2), tangential and normal force on sliders and feet in the march."""
-    marches: Indices
-    """(1,), marches of the last step."""
-    before: Bodies
-    """Sliders and feet at the start of the step."""
+    n: int  # Number of coordinates: N of rigid links, 2 N + 2 of stretching ones
+    substep: float  # Step of the march, s
+    states: Array  # States of half steps, (2 steps + 1, y.size), or two-way of this step alone, (3, y.size)
+    probe: Array  # (2, y.size), states with a unit force in addition
+    ends: Array  # (2,), times of the half steps
+    forces: Array  # (points, 2), tangential and normal force on sliders and feet in the march
+    marches: Indices  # (1,), marches of the last step
+    before: Bodies  # Sliders and feet at the start of the step
 
 
 @inline
@@ -130,14 +114,11 @@ def set_chain_shapes(surface: Surface, bodies: Bodies, shapes: Array) -> None:
     """Tangential and normal speed of the surface at every point per unit rate of each column, in mid-step."""
     m = surface.table.shape[2]
     for i in range(bodies.points.shape[0]):
-        point, contact = bodies.points[i], bodies.contacts[i]
-        piece, slope = contact.piece, contact.slope
-        lever, side = point.lever / (surface.edges[piece + 1] - surface.edges[piece]), point.face * point.image
+        contact = bodies.contacts[i]
+        set_shapes(i, m, surface, bodies.points[i], contact, shapes)
         for j in range(m):
-            value, first, turn = shape_of(piece, j, contact.xi, contact.xi_point, surface.table)
-            shapes[TANGENTIAL, i, j] = (slope * value - lever * first) / math.sqrt(1.0 + slope * slope)
-            shapes[TANGENTIAL, i, m + j] = 1.0 if j < piece else contact.xi_point if j == piece else 0.0
-            shapes[NORMAL, i, j] = side * (value + slope * lever * turn)
+            along = contact.xi_point if j == contact.piece else 0.0
+            shapes[TANGENTIAL, i, m + j] = 1.0 if j < contact.piece else along
 
 
 @inline

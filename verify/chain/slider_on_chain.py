@@ -23,8 +23,8 @@ from verify.dynamics.initial_state import PASSES, SETTLED, compliance_of, equili
 from verify.dynamics.linear_system import Stage, Steps, basis_of
 from verify.dynamics.request import KEEP, Request, request_of
 from verify.dynamics.result import Motion
+from verify.dynamics.simulate import stages_from_rest
 from verify.dynamics.slider_run import Progress, SliderRun
-from verify.dynamics.stages import stages_from_rest
 from verify.dynamics.state import DONE, NOT_FINITE, OFF_PIECES, Surface
 from verify.dynamics.stepping import Assembly, Run, response_of
 from verify.errors import InputError, shown

@@ -80,6 +80,15 @@ class ChainSystem:
         return np.asarray(np.cumsum(pull[..., ::-1], axis=-1)[..., ::-1])
 
     @property
+    def load_table(self) -> Array:
+        """Distance from the near joint, force, moment, angular frequency, phase, link from 0 of all loads, (n, 7)."""
+        rows = [
+            (p.at, *p.force, p.moment, 2.0 * pi * p.frequency_hz, np.deg2rad(p.phase_deg), p.link - 1)
+            for p in self.loads
+        ]
+        return np.array(rows, dtype=float).reshape(len(rows), 7)
+
+    @property
     def rigid(self) -> bool:
         """Whether links do not stretch."""
         return not len(self.axial_stiffness)
@@ -152,23 +161,30 @@ def build_system(
         axial_inertia=axial_inertia,
         tip="roller" if right == "pinned" else "free",
     )
-    loads = []
+    return replace(system, loads=_link_loads(system, chain, forces, frequency_hz, load))
+
+
+def _link_loads(
+    system: ChainSystem, chain: Chain, forces: Sequence[PointLoad], frequency_hz: float, rule: Load
+) -> tuple[LinkLoad, ...]:
+    """Harmonic forces across the chain as loads of its links. Raises InputError for moments, and off the beam."""
+    loads = list[LinkLoad]()
     for force in forces:
         if not isinstance(force, PointForce):
             raise InputError(f"forces has a {type(force).__name__}: a nonlinear chain takes PointForce alone, give it")
         if force.position > system.length * (1.0 + 1e-12):
             raise InputError(f"force.position = {force.position!r} lies off the beam: give up to {system.length!r} m")
-        if load == "lever":
+        if rule == "lever":
             shares = [(*link_at(system, force.position), 1.0)]
         else:
-            weights = joint_weights(chain, np.array([force.position]), load).toarray()[0]
+            weights = joint_weights(chain, np.array([force.position]), rule).toarray()[0]
             shares = [
                 (max(i, 1), float(system.lengths[i - 1]) if i else 0.0, float(weights[i]))
                 for i in np.flatnonzero(weights).tolist()
             ]
         drive = {"frequency_hz": frequency_hz, "phase_deg": force.phase_deg}
         loads += [LinkLoad(link=i, at=at, force=(0.0, part * force.amplitude), **drive) for i, at, part in shares]
-    return replace(system, loads=tuple(loads))
+    return tuple(loads)
 
 
 def straight_chain(system: ChainSystem) -> Chain:
@@ -189,8 +205,3 @@ def link_at(system: ChainSystem, position: float) -> tuple[int, float]:
     nodes = system.nodes
     i = int(np.clip(np.searchsorted(nodes, position, side="right") - 1, 0, system.n_links - 1))
     return i + 1, float(np.clip(position - nodes[i], 0.0, system.lengths[i]))
-
-
-def circular(frequency_hz: float) -> float:
-    """2 pi f, rad/s."""
-    return 2.0 * pi * frequency_hz

@@ -5,8 +5,7 @@ import math
 from verify.arrays import Array
 from verify.contact import laws
 from verify.contact.coulomb import CREEP
-from verify.contact.points import add_friction, slip_at_start, sticking_slip
-from verify.contact.response import TANGENTIAL, product
+from verify.contact.points import TANGENTIAL, add_friction, product, slip_at_start, sticking_slip
 from verify.contact.state import HOLDS, LETS_GO, SLIDES, Bodies, Kind, Path, Record, Response
 from verify.jit import inline, jit, once
 

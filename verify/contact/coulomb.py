@@ -6,24 +6,14 @@ take the force that lets none of them slip in the mean of the step.
 
 import math
 
-from verify.contact.state import (
-    EVENTS,
-    HOLDS,
-    SLIPS,
-    STICKS,
-    TURNS,
-    Path,
-    Record,
-    Slip,
-)
+from verify.contact.state import EVENTS, HOLDS, SLIPS, STICKS, TURNS, Path, Record, Slip
 from verify.jit import inline, jit, once
 
 CREEP = 1e-5
 """Slip of a sticking point among several, relative to its response to its own friction. It defines forces that rigidity
 leaves open (more points than the beam has shapes) up to rounding of slips over it, and moves a point by 1e-5 of what
 it would move in the step without friction."""
-BEYOND = 1.0 + 1e-12
-"""A point that sticks has its force from the last step, up to this rounding of its limit."""
+BEYOND = 1.0 + 1e-12  # A point that sticks has its force from the last step, up to this rounding of its limit
 AT_REST = 1e-9
 """Speed, of what friction changes in a step, below which a slider that is put on a surface at rest has its speed."""
 

@@ -7,8 +7,7 @@ from verify.jit import inline, once
 
 ROUNDS = 60
 """Newton steps and bisections for the slip of the tanh law: bisection alone reaches its rounding in about 50."""
-SETTLED = 1e-14
-"""Change of the slip, relative and over 1e-12 m/s, at which it is at its rounding."""
+SETTLED = 1e-14  # Change of the slip, relative and over 1e-12 m/s, at which it is at its rounding
 
 
 @inline

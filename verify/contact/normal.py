@@ -1,6 +1,6 @@
 """Normal laws: prescribed loads, masses that follow the surface, unilateral springs and dashpots of feet."""
 
-from verify.contact.response import NORMAL, add_response, own_product, product
+from verify.contact.points import NORMAL, add_response, own_product, product
 from verify.contact.state import BILATERAL, PRESCRIBED, SPRING, Bodies, Kind, Record, Response
 from verify.jit import inline, jit, once
 

@@ -12,14 +12,11 @@ from verify.contact.points import slip_of
 from verify.contact.state import Bodies, Kind, Path, Record
 from verify.jit import inline, jit, once
 
-ROUNDS = 100
-"""Newton steps and bisections for the gain of speed: bisection alone reaches its rounding in about 60."""
+ROUNDS = 100  # Newton steps and bisections for the gain of speed: bisection alone reaches its rounding in about 60
 AT_REST = 1e-13
 """Speed, over the speeds of which it is a difference, at which a point is at rest: their rounding over a step."""
-WIDER = 1.001
-"""Bounds of the gain of speed, over all limits of friction, so that a root at a limit is within them."""
-SETTLED = 1e-14
-"""Momentum that is missing, over that of all limits of friction, at which the root is at its rounding."""
+WIDER = 1.001  # Bounds of the gain of speed, over all limits of friction, so that a root at a limit is within them
+SETTLED = 1e-14  # Momentum that is missing, over that of all limits of friction, at which the root is at its rounding
 
 
 @inline

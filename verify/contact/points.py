@@ -1,18 +1,49 @@
-"""Friction of one point in a step, the forces of all other points given."""
+"""Friction of one point in a step, the forces of all other points given, and the response of the beam to a force.
+
+Forces are constant over a step. The Delassus operator is never formed: `Response.rates` holds what all forces add to
+the mean rates of the columns, so that a visit to a point costs two products over the columns.
+"""
 
 import math
 
+from verify.arrays import Array
 from verify.contact import laws
-from verify.contact.response import TANGENTIAL, add_response, product
 from verify.contact.state import SPRING, Bodies, Kind, Record, Response, Slip
-from verify.jit import inline, once
+from verify.jit import FAST, inline, once
 
+TANGENTIAL, NORMAL = 0, 1  # Directions, rows of `shapes`; the responses to them are two rows further
 DAMPING = 0.1
 """Share D of no slip at the end in the condition of a sticking point, (1 - D) s + D (s - s_0/2) = 0.
 
 No mean slip alone, D = 0, would leave one that alternates from step to step, e = 2 s - s_0 = -s_0. With D it falls by
 1 - D a step: a tenth takes a decade in 22 steps, within a period of the drive, and leaves the mean slip D s_0/2.
 """
+
+
+@inline(fastmath=FAST)
+def product(i: int, direction: int, response: Response) -> float:
+    """Mean speed of the surface at point i in a direction by the mean rates of the columns, m/s."""
+    total, shapes, rates = 0.0, response.shapes, response.rates
+    for j in range(shapes.shape[2]):
+        total += shapes[direction, i, j] * rates[j]
+    return total
+
+
+@inline(fastmath=FAST)
+def own_product(i: int, direction: int, shapes: Array) -> float:
+    """The same by a unit force of the point itself, m/s/N."""
+    total = 0.0
+    for j in range(shapes.shape[2]):
+        total += shapes[direction, i, j] * shapes[2 + direction, i, j]
+    return total
+
+
+@inline(fastmath=FAST)
+def add_response(i: int, direction: int, force: float, response: Response) -> None:
+    """Add a force of point i on the beam to the mean rates of the columns; friction on a slider acts on it by -1."""
+    shapes, rates = response.shapes, response.rates
+    for j in range(shapes.shape[2]):
+        rates[j] -= force * shapes[2 + direction, i, j]
 
 
 @inline

@@ -11,20 +11,16 @@ from verify.contact import laws
 from verify.contact.active_sets import SETTLED, revise_limits, solve_active_sets
 from verify.contact.normal import set_normal_forces
 from verify.contact.one_way import solve_one_way_friction
-from verify.contact.points import set_friction
-from verify.contact.response import NORMAL, TANGENTIAL, own_product, product
+from verify.contact.points import NORMAL, TANGENTIAL, own_product, product, set_friction
 from verify.contact.state import BILATERAL, HOLDS, SLIDES, SPRING, Bodies, Kind, Record, Response
 from verify.jit import inline, jit, once
 
-SWEEPS = 24
-"""Sweeps before the friction forces of a step are solved together: a third of the time of that solution."""
-TOLERANCE = 1e-12
-"""Change of a force in a sweep, of the largest normal force, at which sweeps have converged."""
+SWEEPS = 24  # Sweeps before the friction forces of a step are solved together: a third of the time of that solution
+TOLERANCE = 1e-12  # Change of a force in a sweep, of the largest normal force, at which sweeps have converged
 PASSES = 50
 """Rounds of friction at given normal forces and of normal forces at given friction. The one acts on the other by the
 slope of the surface and by dashpots, both small; a step that needs more counts as not converged."""
-UNCONVERGED = 1e-9
-"""Change of a force, of the largest normal force, above which a step counts as not converged."""
+UNCONVERGED = 1e-9  # Change of a force, of the largest normal force, above which a step counts as not converged
 
 
 @once

@@ -11,22 +11,19 @@ from numpy.typing import NDArray
 
 from verify.arrays import Array
 
-Record = Any
-"""A record of one of the types below; its fields are numbers."""
+Record = Any  # A record of one of the types below; its fields are numbers
 Records = NDArray[Any]
 EVENTS = 12
 """Most changes of friction of a point in a step: of Coulomb's law with a linear acceleration there are at most four,
 the others are left for roundings at rest."""
-COULOMB, TANH, ELASTIC = range(3)
-"""Friction laws of a point, the numbers of the switch in `laws`."""
+COULOMB, TANH, ELASTIC = range(3)  # Friction laws of a point, the numbers of the switch in `laws`
 LAWS = {"coulomb": COULOMB, "tanh": TANH}
 """The law of a rigid point by `Slider.law`; a tangential spring is in series with either."""
 PRESCRIBED, BILATERAL, SPRING = range(3)
 """Normal laws of all points: N = load; N = load + mass times the acceleration of the surface; springs and dashpots."""
 SLIDES, HOLDS, LETS_GO = 0.0, 1.0, 2.0
 """`limit_state` of a point in the step: kinetic limit; static limit; kinetic one after the static one was exceeded."""
-STICKS, SLIPS, TURNS, LANDS, LEAVES = 1.0, 2.0, 3.0, 4.0, 5.0
-"""Kinds of events, rows (time, kind, point, distance)."""
+STICKS, SLIPS, TURNS, LANDS, LEAVES = 1.0, 2.0, 3.0, 4.0, 5.0  # Kinds of events, rows (time, kind, point, distance)
 
 
 def record(*numbers: str, integers: str = "", rows: str = "") -> np.dtype[np.void]:

@@ -7,12 +7,10 @@ from verify.jit import inline, jit, once
 
 BRIEF = 0.01
 """Nondimensional step below which the closed form of the law would cancel; four stages are off by 3e-11 there."""
-FLAT = 20.0
-"""From there on tanh is 1 to the last digit: 2 e^-40 is 8e-18."""
+FLAT = 20.0  # From there on tanh is 1 to the last digit: 2 e^-40 is 8e-18
 EQUAL = 1e-7
 """Distance of alpha from 1 at which the closed forms for either side part; it changes the force by as much."""
-SETTLED = 1e-8
-"""Relative change at which Newton's method ends: the next one would be its square."""
+SETTLED = 1e-8  # Relative change at which Newton's method ends: the next one would be its square
 ROUNDS = 80
 """Newton steps at most: the functions have a curvature of one sign, so that they do not return; 6 are common."""
 STRAIGHT = 0.01

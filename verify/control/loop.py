@@ -12,8 +12,7 @@ from verify.formatting import one_line
 from verify.waves.best_drive import PROPORTIONAL
 from verify.waves.driven_case import UnitWaves
 
-BAND = 0.02
-"""Half the band about the target in which a response has settled, relative to the step."""
+BAND = 0.02  # Half the band about the target in which a response has settled, relative to the step
 
 
 class Response(Struct, frozen=True, eq=False):

@@ -18,10 +18,8 @@ from verify.linear.positions import Numbers
 from verify.motor.steady_state import MotorCase, crest_speed, steady_state
 from verify.problem.beam import PointForce
 
-Force = Callable[[float, float], float]
-"""(speed, m/s, constant command) -> mean force along +x, N."""
-MOST_PERIODS = 400
-"""Drive periods until the mean force of unilateral contact converges."""
+Force = Callable[[float, float], float]  # (speed, m/s, constant command) -> mean force along +x, N
+MOST_PERIODS = 400  # Drive periods until the mean force of unilateral contact converges
 
 
 def commanded(case: MotorCase, command: float, output: str) -> MotorCase:

@@ -16,7 +16,7 @@ from verify.errors import InputError, shown
 from verify.linear.positions import Loads, Numbers, as_vector
 from verify.problem.beam import PointForce, PointMoment
 from verify.problem.slider import Slider
-from verify.validation import as_tuple, check_integer, check_number, check_unmasked, python_scalar, unit, validate
+from verify.validation import as_tuple, check_integer, check_number, check_unmasked, unit, validate
 
 SHORTEST = 1e-100
 """Least duration, s, and least growth in periods (a shorter growth is a step): squares do not underflow."""
@@ -118,15 +118,6 @@ class Step(msgspec.Struct, frozen=True):
             raise InputError(
                 f"step.seconds = {self.seconds!r} and step.per_period = {self.per_period!r}: give one of the two"
             )
-
-
-def step_of(step: Step | float | None) -> Step:
-    """A step from its length in s. Raises InputError."""
-    if isinstance(step, Step):
-        return step
-    if step is not None:
-        check_number("step", step, "seconds", above=0)
-    return Step(seconds=python_scalar(step))
 
 
 class Keep(msgspec.Struct, frozen=True):

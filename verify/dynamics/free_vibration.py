@@ -22,14 +22,12 @@ from verify.validation import check_integer, check_number
 
 Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
 """A mode number, a function of x (m), or positions and values with linear interpolation."""
-GAUSS = 6
-"""Gauss points per piece of the shapes: squares of cubics are integrated exactly."""
+GAUSS = 6  # Gauss points per piece of the shapes: squares of cubics are integrated exactly
 MOST_SAMPLES = 1_000_000
 NEAR = 1e-6
 """Half interval of the difference quotient for the rotation of a body, relative to the length; largest deflection of
 an initial shape at a supported end, relative to its maximum."""
-CORNERED = 0.05
-"""Fraction of the elastic energy in the upper half of the modes above which the shape has corners."""
+CORNERED = 0.05  # Fraction of the elastic energy in the upper half of the modes above which the shape has corners
 CORNERS = "energies: the initial shape has corners, so that its elastic energy grows with the number of modes"
 
 

@@ -18,8 +18,7 @@ from verify.jit import FAST, inline, jit
 
 BISECTIONS = 100
 """Halvings of the interval of an event, until its ends are neighbouring numbers: 52 for one of a step's size."""
-IMPACTS = 100_000
-"""Landings, lift-offs and pieces of a step, at most."""
+IMPACTS = 100_000  # Landings, lift-offs and pieces of a step, at most
 REST = 1e-6
 """Shortest flight, as a fraction of a step: with restitution e the flights of a ball at rest sum to 1e-6/(1 - e)."""
 ROUNDING = 4e-15
@@ -27,8 +26,7 @@ ROUNDING = 4e-15
 the last place, of the sums over columns."""
 LOW = 1e4
 """Height, over that rounding, above which a flight counts whatever energy it loses: its speed is known to 1e-4."""
-RIDES, FLIES, SET_DOWN = 1.0, -1.0, 0.0
-"""`depth` of the point."""
+RIDES, FLIES, SET_DOWN = 1.0, -1.0, 0.0  # `depth` of the point
 
 
 class Ground(NamedTuple):

@@ -17,8 +17,7 @@ of its surface, so that a few iterations end in practice."""
 SETTLED = 1e-14
 """Change of the surface, over its largest displacement or that by all forces in one sense where those of a clasp
 cancel, at which an equilibrium is at its rounding."""
-CLOSE = 1e-9
-"""The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there."""
+CLOSE = 1e-9  # The same above which there is none: an iteration may end in rounding above `SETTLED`, but not there
 
 
 def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Array, Array]], compliance: Array) -> Array:
@@ -29,8 +28,10 @@ def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Arra
     Springs press but do not pull. Sets the pitches of the feet; returns the depth, (feet,), m, that a foot between two
     beams gains by its preload. Raises InputError for a foot without load and without an equilibrium.
     """
-    p = assembly.points
-    normal, place = _shares(assembly), np.zeros((len(assembly.feet), 3))
+    p, feet, foot = assembly.points, assembly.feet, assembly.points["foot"]
+    place, normal = np.zeros((len(feet), 3)), np.array(p["load"])
+    if len(feet):  # at first all points of a foot share its load, or its preload between two beams
+        normal = ((abs(feet["load"]) + np.bincount(foot, p["inset"] * p["stiffness"])) / np.bincount(foot))[foot]
     friction, level = 0.0 * normal, np.full(len(normal), np.inf)
     between = _between(assembly)
     moves = np.transpose([~between, ~between & (assembly.feet["inverse_inertia"] > 0.0), between])
@@ -47,15 +48,6 @@ def equilibrium(assembly: Assembly, surface: Callable[[Array, Array], tuple[Arra
     if not change <= CLOSE * size:
         raise InputError(f"slider.preload: beam and slider have no equilibrium within {PASSES} iterations, lower it")
     return np.asarray(place[:, 2])
-
-
-def _shares(assembly: Assembly) -> Array:
-    """Load of every point, N, where the points of a foot share its load equally."""
-    if not len(assembly.feet):
-        return np.array(assembly.points["load"])
-    p, foot = assembly.points, assembly.points["foot"]
-    preload = np.bincount(foot, p["inset"] * p["stiffness"])  # between two beams
-    return np.asarray(((abs(assembly.feet["load"]) + preload) / np.bincount(foot))[foot])
 
 
 def _between(assembly: Assembly) -> BoolArray:

@@ -7,9 +7,16 @@ from verify.contact import laws
 from verify.contact.points import slip_of
 from verify.contact.solver import solve
 from verify.contact.state import BILATERAL, SPRING, Bodies, Kind, Record, Response
-from verify.dynamics.columns import apply_forces, filter_rates, rotate_half, set_factors, set_mean_rates, shift_factors
+from verify.dynamics.columns import (
+    apply_forces,
+    filter_rates,
+    rotate_half,
+    set_factors,
+    set_mean_rates,
+    set_response,
+    shift_factors,
+)
 from verify.dynamics.recording import add_sums, sample, write_events
-from verify.dynamics.shapes import set_response
 from verify.dynamics.state import (
     DONE,
     END,
@@ -34,8 +41,7 @@ POWERS = (1.0 / 6.0, 4.0 / 6.0, 3.0 / 6.0, -2.0 / 6.0)
 Simpson's rule has 1/6, 4/6, 1/6. Contact forces add half as much to a rate in mid-step as at the end, where both values
 are known: 4/6 of a half of the difference are 2/6 more with them and 2/6 less without. That is exact for the power of
 the drive, which is linear in the rates; the quadratic loss of modes misses a quarter of the square of what they add."""
-AT_REST = 1e-13
-"""Slip, over the speeds of which it is a difference, at which a point moves with the surface."""
+AT_REST = 1e-13  # Slip, over the speeds of which it is a difference, at which a point moves with the surface
 
 
 @inline(fastmath=FAST)

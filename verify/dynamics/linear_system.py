@@ -41,13 +41,6 @@ def cut(duration: float, longest: float, samples: int) -> Steps:
     return Steps(every * samples, duration / (every * samples), every)
 
 
-class Growth(msgspec.Struct, frozen=True, eq=False):
-    """An interval in which the amplitude of the forces is a polynomial of t / duration."""
-
-    steps: Steps
-    coefficients: Array
-
-
 class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """An interval with one polynomial envelope of the forces; its time t starts at 0."""
 

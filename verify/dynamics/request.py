@@ -10,12 +10,11 @@ from msgspec.structs import replace
 
 from verify.actuators.on_beam import Mounted
 from verify.arrays import Array, ComplexArray
-from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of, step_of
-from verify.dynamics.circuits import check_circuits
+from verify.dynamics.arguments import SHORTEST, Excitation, Keep, PrescribedSlider, Sliders, Step, sliders_of
 from verify.dynamics.contact_assembly import check_sliders
-from verify.dynamics.excitation import CONSTANT, check_damping
+from verify.dynamics.excitation import CONSTANT, check_circuits, check_damping
 from verify.dynamics.free_vibration import FreeVibration
-from verify.dynamics.linear_system import Growth, Stage, cut
+from verify.dynamics.linear_system import Stage, Steps, cut
 from verify.dynamics.result import EndState, Motion
 from verify.errors import InputError, shown, written
 from verify.linear.mesh import part_counts
@@ -24,20 +23,17 @@ from verify.linear.registry import MODELS
 from verify.linear.time_basis import Ratio, TimeBasis, damping_in
 from verify.problem.beam import Beam, PointLoad, check_frequency, is_lossless
 from verify.problem.slider import GRAVITY, Slider
-from verify.validation import as_tuple, check_number, check_type
+from verify.validation import as_tuple, check_number, check_type, python_scalar
 
 STEPS_PER_PERIOD, FEET_STEPS_PER_PERIOD = 64, 61
 """Least number of time steps per drive period. For feet it is prime, so that equally spaced points on a wave do not
 all reverse their friction in the same steps."""
-FEET_MODES = 80
-"""Default number of modes of the exact beam under feet."""
+FEET_MODES = 80  # Default number of modes of the exact beam under feet
 COARSEST = 0.25
 """Largest step of a slider in drive periods: Simpson's rule misses (pi/4)^4/180 = 0.2 % of a surface speed there."""
-MOST_PERIODS = 1e12
-"""Number of drive periods after which rounding of the phase is 1e-3 rad."""
+MOST_PERIODS = 1e12  # Number of drive periods after which rounding of the phase is 1e-3 rad
 MOST_STEPS = 2e9
-KEEP = Keep()
-"""Recorded output by default: no deflection, 201 times."""
+KEEP = Keep()  # Recorded output by default: no deflection, 201 times
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -54,7 +50,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     prescribed: tuple[PrescribedSlider, ...]
     starts: tuple[float, ...]  # Initial positions of the sliders, m; in a continued run those of the first run
     points: Array
-    pieces: tuple[Growth, ...]
+    pieces: tuple[tuple[Steps, Array], ...]  # Steps, and the amplitude of the forces as a polynomial of t / duration
     step: float | None
     before: EndState | None
     circuits: tuple[Mounted, ...]
@@ -86,13 +82,6 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return bool(self.sliders) and self.sliders[0].coupling == "two-way"
 
     @property
-    def sticks_in_several_ways(self) -> bool:
-        """Whether static friction above the kinetic one holds several rigid points of feet."""
-        holds = any(slider.mu_static is not None and slider.mu_static > slider.mu for slider in self.sliders)
-        points = [foot.points for slider in self.sliders for foot in slider.feet]
-        return self.feet and holds and sum(points) > 1
-
-    @property
     def gravity(self) -> float:
         """Least normal force over moving mass of the sliders, m/s^2; without sliders standard gravity."""
         return min((slider.effective_gravity for slider in self.sliders), default=GRAVITY)
@@ -109,8 +98,8 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         elif self.beam.loss_factor:
             notes.append(f"damping: loss factor {self.beam.loss_factor:g}")
         if len(self.pieces) > 1:
-            notes.append(f"forces grow over {sum(piece.steps.duration for piece in self.pieces[:-1]):.6g} s")
-            reached = float(np.sum(self.pieces[-2].coefficients))
+            notes.append(f"forces grow over {sum(steps.duration for steps, _ in self.pieces[:-1]):.6g} s")
+            reached = float(np.sum(self.pieces[-2][1]))
             if abs(reached - 1.0) >= 1e-9:
                 notes.append(f"forces jump from {reached:.6g} times their amplitude to all of it")
         return tuple(notes)
@@ -190,7 +179,9 @@ def request_of(
     starts = starts or tuple(one.initial_position(beam) for one in sliders)
     if sliders:
         check_sliders(beam, sliders, starts)
-    step = step_of(step)
+    if step is not None and not isinstance(step, Step):
+        check_number("step", step, "seconds", above=0)
+    step = step if isinstance(step, Step) else Step(seconds=python_scalar(step))
     few = bool(sliders and sliders[0].contact) and not kind.sized
     replaced = modal_damping != 0.5 * beam.loss_factor or bool(beam.loss_factor and is_lossless(beam))
     return Request(
@@ -263,7 +254,9 @@ def check_steps(duration: float, step: float) -> None:
         )
 
 
-def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
+def _cut(
+    duration: float, grown: list[tuple[float, Array]], longest: float, samples: int
+) -> tuple[tuple[Steps, Array], ...]:
     """Time steps of the envelope's pieces and of the constant forces after them; samples in proportion to duration.
 
     At least one sample per piece. Raises InputError.
@@ -279,7 +272,7 @@ def _cut(duration: float, grown: list[tuple[float, Array]], longest: float, samp
     shares[-1] = samples - sum(shares[:-1])
     if shares[-1] < 1:
         shares = part_counts([seconds for seconds, _ in pieces], max(samples, len(pieces)))
-    return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
+    return tuple((cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
 
 
 def _check_continued(before: EndState, beam: Beam, model: str, count: int | None, sliders: Sequence[Slider]) -> None:
@@ -295,8 +288,8 @@ def _check_continued(before: EndState, beam: Beam, model: str, count: int | None
         raise InputError(f"start: its slider {before.off}, continue a run whose slider did not")
     if len(sliders) != len(before.starts):
         raise InputError(f"start has {len(before.starts)} sliders and this run {len(sliders)}: give as many")
-    states = zip(sliders, before.starts, before.contact.sliders.tolist(), before.sliders, strict=True)
-    for slider, first, (travelled, speed), earlier in states:
+    moved = before.contact.sliders[["x", "v"]].tolist()
+    for slider, first, (travelled, speed), earlier in zip(sliders, before.starts, moved, before.sliders, strict=True):
         own = (slider.position, (None, first, first + travelled)), (slider.speed, (0.0, earlier.speed, speed))
         for name, (value, known) in zip(("position", "speed"), own, strict=True):
             if value not in known:

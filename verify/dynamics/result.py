@@ -4,14 +4,14 @@ import numpy as np
 from msgspec import Struct
 
 from verify.arrays import Array
-from verify.contact.state import Records
+from verify.contact.state import Bodies
 from verify.errors import InputError
 from verify.formatting import one_line
 from verify.problem.beam import Beam
 from verify.problem.slider import Slider
 
-END = "end"
-"""Value of `Statistics.stopped` of a complete run."""
+END = "end"  # Value of `Statistics.stopped` of a complete run
+FOOT_STATE = ("height", "velocity_z", "pitch", "pitch_rate")  # Columns of `EndState.feet`
 NONE, NO_EVENTS, NO_CIRCUITS, NAN = np.empty(0), np.empty((0, 4)), np.empty((0, 0)), float("nan")
 
 
@@ -103,14 +103,6 @@ class Margins(Struct, frozen=True, kw_only=True):
     """Natural frequency of the contact times the step, rad; its square over 24 is the relative period error."""
 
 
-class ContactState(Struct, frozen=True, eq=False):
-    """Sliders, feet and points at the end of a run."""
-
-    sliders: Array  # (sliders, 2): distance travelled and speed
-    feet: Array  # (feet, 4): height, its rate, pitch, its rate
-    points: Records  # (points,), CONTACT
-
-
 class EndState(Struct, frozen=True, eq=False, kw_only=True):
     """State from which a run continues."""
 
@@ -125,24 +117,26 @@ class EndState(Struct, frozen=True, eq=False, kw_only=True):
     steady: bool = False  # Whether the run had start = 'steady'
     starts: tuple[float, ...] = ()  # Initial positions of the sliders, m
     sliders: tuple[Slider, ...] = ()
-    contact: ContactState | None = None  # State of the sliders; None without slider
+    contact: Bodies | None = None  # Sliders, feet and points; None without slider
     off: str = ""  # Message for a slider that left its contact range; else empty
     __repr__ = one_line(time="s")
 
     @property
     def feet(self) -> Array:
         """(feet, 4): height, its rate, pitch, its rate; (0, 4) without feet."""
-        return np.empty((0, 4)) if self.contact is None else self.contact.feet
+        if self.contact is None:
+            return np.empty((0, 4))
+        return np.stack([self.contact.feet[name] for name in FOOT_STATE], axis=1)
 
     @property
     def position(self) -> float | None:
         """Position of the first slider, m; None without slider."""
-        return None if self.contact is None else self.starts[0] + float(self.contact.sliders[0, 0])
+        return None if self.contact is None else self.starts[0] + float(self.contact.sliders["x"][0])
 
     @property
     def speed(self) -> float:
         """Speed of the first slider, m/s; 0 without slider."""
-        return 0.0 if self.contact is None else float(self.contact.sliders[0, 1])
+        return 0.0 if self.contact is None else float(self.contact.sliders["v"][0])
 
 
 class Motion(Struct, frozen=True, eq=False, kw_only=True):

@@ -16,9 +16,9 @@ from verify.dynamics.contact_assembly import assemble, contact_rate
 from verify.dynamics.initial_state import set_down, static_deflection, steady_with_mass
 from verify.dynamics.linear_system import Stage
 from verify.dynamics.request import Request, check_steps
-from verify.dynamics.result import END, ContactState, Coupling, EnergyBalance, Margins, Motion, Statistics
+from verify.dynamics.result import END, FOOT_STATE, Coupling, EnergyBalance, Margins, Motion, Statistics
 from verify.dynamics.state import SAMPLE
-from verify.dynamics.stepping import Assembly, Run, of_all, run_stages
+from verify.dynamics.stepping import Assembly, Run, run_stages
 from verify.errors import InputError
 from verify.linear.surface import contact_range
 from verify.linear.time_basis import TimeBasis
@@ -28,11 +28,8 @@ WORKS = (
     "normal_on_beam",
 )
 """Sums of the engine by term of `EnergyBalance`."""
-SAMPLES = SAMPLE.names or ()
-"""Samples of the engine by field of `Motion`."""
+SAMPLES = SAMPLE.names or ()  # Samples of the engine by field of `Motion`
 SAMPLED = ("times", "deflection", "voltages", "charges", "height", "pitch", "pressures", *SAMPLES)
-FOOT_STATE = ("height", "velocity_z", "pitch", "pitch_rate")
-"""Columns of `ContactState.feet`."""
 Progress = Callable[[float], None]
 
 
@@ -52,12 +49,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """A run with time steps that resolve motion and contact. Raises InputError."""
         stages = [stage.within(contact_range(request.beam, request.starts[0])) for stage in stages]
         assembly, free = assemble(request.beam, request.prescribed, request.starts), basis if request.two_way else None
-        coupling, margins = validity.coupling_of(request, basis, stages[-1]), validity.margins_of(request, stages[-1])
+        rate = contact_rate(assembly, request.sliders, free) if request.feet else 0.0
         if request.feet:
-            rate = contact_rate(assembly, request.sliders, free)
             stages = step_control.feet_stages(request, stages, rate, float(free.omegas.max()) if free else 0.0)
-            slips, phase = validity.presliding(request), rate * stages[-1].steps.dt
-            margins = replace(margins, presliding=slips, contact_step=phase)
         else:
             stages, more = step_control.point_stages(request, stages)
             notes += more
@@ -67,8 +61,8 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             basis=basis,
             stages=stages,
             assembly=assembly,
-            coupling=coupling,
-            margins=margins,
+            coupling=validity.coupling_of(request, basis, stages[-1]),
+            margins=validity.margins_of(request, stages[-1], rate),
             notes=notes,
         )
 
@@ -88,14 +82,14 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             set_down(assembly, stage, z, rise)
             return assembly, z
         state = before.contact
-        if state.points.shape != assembly.contacts.shape or len(state.feet) != len(assembly.feet):
+        if state.contacts.shape != assembly.contacts.shape or len(state.feet) != len(assembly.feet):
             raise InputError("start: its feet differ from slider.foot, give both runs the same slider")
         prescribed = assembly.sliders["inverse_mass"] == 0.0
-        assembly.sliders["x"] = state.sliders[:, 0]
-        assembly.sliders["v"] = np.where(prescribed, assembly.sliders["v"], state.sliders[:, 1])
-        for name, values in zip(FOOT_STATE, state.feet.T, strict=True):
-            assembly.feet[name] = values
-        assembly.contacts[:] = state.points
+        assembly.sliders["x"] = state.sliders["x"]
+        assembly.sliders["v"] = np.where(prescribed, assembly.sliders["v"], state.sliders["v"])
+        for name in FOOT_STATE:
+            assembly.feet[name] = state.feet[name]
+        assembly.contacts[:] = state.contacts
         return assembly, z
 
     def converged(self, progress: Progress) -> Motion:
@@ -106,7 +100,9 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         Raises InputError for a residual of the energy balance above its tolerance.
         """
         request, stages, (assembly, z) = self.request, self.stages, self._initial()
-        if (request.feet and not request.sticks_in_several_ways) or not request.two_way or request.step is not None:
+        # static friction above the kinetic one may hold several rigid points in more than one way
+        several = len(assembly.points) > 1 and any(assembly.sliders["mu_static"] > assembly.sliders["mu"])
+        if (request.feet and not several) or not request.two_way or request.step is not None:
             return step_control.checked(self.run(stages, assembly, z, progress), request, stages)
         closer = ceil(step_control.COMPARED / sum(stage.steps.n // stage.steps.every for stage in stages))
         dt = max(stage.steps.dt for stage in stages)
@@ -133,15 +129,13 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         recorded = self._marched(stages, z, assembly, progress)
         journal, sums, gained = recorded.journal, recorded.journal.sums, self._kinetic(assembly) - kinetic
         if request.start == "rest" and request.before is None:
-            still = np.array([slider.speed == 0.0 for slider in request.sliders])
-            journal.samples["friction"][0, still] = 0.0  # at rest on a beam at rest, whatever the sign of rounding
+            # at rest on a beam at rest, whatever the sign of rounding
+            journal.samples["friction"][0, [slider.speed == 0.0 for slider in request.sliders]] = 0.0
         offsets = np.array(request.starts) - request.starts[0]
         mean = 1.0 / recorded.seconds if recorded.seconds > 0.0 else float("nan")
         notes, kept = list(self.notes), len(recorded.events)
-        if recorded.n_events > kept:
-            notes.append(f"events: the first {kept} of {recorded.n_events}")
-        if recorded.left:
-            notes.append("energy: work of the drive and losses of the beam until the load has left it")
+        notes += [f"events: the first {kept} of {recorded.n_events}"] * (recorded.n_events > kept)
+        notes += ["energy: work of the drive and losses of the beam until the load has left it"] * recorded.left
         margins, fall = self.margins, float(sums["max_fall"].max())
         if not request.feet:
             margins = replace(margins, lift_off=fall / request.gravity if request.gravity else inf)
@@ -169,14 +163,23 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             margins=margins,
             energy=_balance(recorded, gained, assembly.kind.two_way),
             notes=tuple(notes),
-            statistics=_statistics(recorded, stages[-1].steps.dt, perf_counter() - began),
+            statistics=Statistics(
+                steps=recorded.n_steps,
+                evaluations=2 * recorded.n_steps + 1,
+                step_s=stages[-1].steps.dt,
+                set_up_s=recorded.set_up_s,
+                wall_s=perf_counter() - began,
+                loop_s=recorded.loop_s,
+                unconverged=int(journal.balance["unconverged"][0]),
+                stopped=recorded.stopped,
+            ),
             end=request.end(
                 stages[-1],
                 recorded.z,
                 recorded.end,
                 starts=request.starts,
                 sliders=request.sliders,
-                contact=_state(assembly),
+                contact=assembly.bodies,
                 off="" if recorded.stopped in (END, "diverged", "chatters") else recorded.stopped,
             ),
         )
@@ -201,33 +204,10 @@ class SliderRun(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return 0.5 * float(twice)
 
 
-def _state(assembly: Assembly) -> ContactState:
-    """State of sliders, feet and points."""
-    sliders, feet = assembly.sliders, assembly.feet
-    return ContactState(
-        sliders=np.stack([sliders["x"], sliders["v"]], axis=1),
-        feet=np.stack([feet[name] for name in FOOT_STATE], axis=1),
-        points=assembly.contacts.copy(),
-    )
-
-
-def _statistics(recorded: Run, dt: float, wall: float) -> Statistics:
-    """Cost of a run of steps of dt that took `wall` seconds."""
-    return Statistics(
-        steps=recorded.n_steps,
-        evaluations=2 * recorded.n_steps + 1,
-        step_s=dt,
-        set_up_s=recorded.set_up_s,
-        wall_s=wall,
-        loop_s=recorded.loop_s,
-        unconverged=int(recorded.journal.balance["unconverged"][0]),
-        stopped=recorded.stopped,
-    )
-
-
 def _balance(recorded: Run, gained: float, two_way: bool) -> EnergyBalance:
     """The energy balance with the gain of kinetic energy of sliders and feet, J."""
-    works, balance = of_all(recorded.journal.sums), of_all(recorded.journal.balance)
+    tables = recorded.journal.sums, recorded.journal.balance
+    works, balance = ({name: float(one[name].sum()) for name in one.dtype.names or ()} for one in tables)
     kinetic, elastic, initial = recorded.gains
     load = works["external_work"] + works["load_work"]
     work = works["normal_work"] + works["tangential_work"] + works["slope_work"] + load

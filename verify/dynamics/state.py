@@ -10,8 +10,7 @@ from typing import NamedTuple
 from verify.arrays import Array, Indices
 from verify.contact.state import Records, record
 
-DONE, OFF_PIECES, NOT_FINITE, CHATTERS = range(4)
-"""Why a compiled loop returns."""
+DONE, OFF_PIECES, NOT_FINITE, CHATTERS = range(4)  # Why a compiled loop returns
 START, HALF, MIDDLE, END = range(4)
 """Instants of a step. HALF is mid-step; MIDDLE has the deflection of mid-step and, of feet, the MEAN velocity over the
 step, displacement/dt, which is exact for every row. Of points without feet it has the velocity with which Simpson's
@@ -95,8 +94,7 @@ SAMPLE = record(
 contact) are means over the interval that ends with the sample, friction loss and work of the surface along are its
 sums. Of points without feet, friction, surface speed and normal force are of the instant: the law at the sample, the
 mean of the last step where it sticks."""
-PROGRESS = record(integers="step samples events")
-"""Steps of the stage, samples and events so far."""
+PROGRESS = record(integers="step samples events")  # Steps of the stage, samples and events so far
 
 
 class Journal(NamedTuple):

@@ -19,18 +19,13 @@ STICKY = 0.1
 
 The displacement on a strip of 98 segments is off by 5e-4 at a tenth, by 2e-3 at two tenths, with steps above 1.4 rad of
 the highest mode."""
-CONVERGED = 0.01
-"""Largest relative change of the displacement with the doubled step of a converged run."""
-CONTACT_RADIANS = 0.5
-"""Phase of the contact's natural oscillation per step, rad: period error 1 %."""
+CONVERGED = 0.01  # Largest relative change of the displacement with the doubled step of a converged run
+CONTACT_RADIANS = 0.5  # Phase of the contact's natural oscillation per step, rad: period error 1 %
 MODE_RADIANS = 0.5 * np.pi
 """Phase of the highest mode per step of feet on a two-way coupled beam, rad: four steps a period."""
-UNSTABLE = 2.0
-"""Phase of the contact's natural oscillation per step at the stability limit, rad."""
-COMPARED = 16
-"""Least number of samples for the comparison of two runs, which may coincide at a single one."""
-MOST_GAIN = 0.01
-"""Tolerance of created energy and of the residual of the balance, relative to all energy exchanged."""
+UNSTABLE = 2.0  # Phase of the contact's natural oscillation per step at the stability limit, rad
+COMPARED = 16  # Least number of samples for the comparison of two runs, which may coincide at a single one
+MOST_GAIN = 0.01  # Tolerance of created energy and of the residual of the balance, relative to all energy exchanged
 ROUNDINGS = 8.0
 """Rounding of the works of a step, in units of that of the elastic energy of contact: up to 1.1 of a clasp at rest."""
 

@@ -12,10 +12,8 @@ from verify.contact.state import SPRING, Bodies, Kind, Records, Response
 from verify.dynamics import state
 from verify.dynamics.linear_system import Stage
 
-CHUNK = 20_000
-"""Number of steps between checks for an interrupt."""
-EVENTS = 20_000
-"""Capacity of the event log."""
+CHUNK = 20_000  # Number of steps between checks for an interrupt
+EVENTS = 20_000  # Capacity of the event log
 RESOLVED = 1.5
 """Phase or decay of a row per step, rad or neper, above which rates are means over the step.
 
@@ -257,11 +255,6 @@ class Run:
         self.z = stage.rows.after(self.z, (stage.steps.n - begun) * dt)
         journal.progress["step"], journal.progress["samples"] = stage.steps.n, row + len(rest)
         self.left = True
-
-
-def of_all(records: Records) -> dict[str, float]:
-    """Sums of the fields of records of floats, by name."""
-    return {name: float(records[name].sum()) for name in records.dtype.names or ()}
 
 
 def response_of(assembly: Assembly, columns: int) -> Response | None:

@@ -8,10 +8,8 @@ from verify.contact.state import PRESCRIBED, SPRING, Bodies, Kind, Record
 from verify.dynamics.state import END, MIDDLE, RATE, START, VALUE, Surface
 from verify.jit import FAST, inline, jit, once
 
-SIMPSON = (1.0 / 6.0, 0.0, 4.0 / 6.0, 1.0 / 6.0)
-"""Simpson's weights of START, (HALF), MIDDLE, END."""
-AHEAD = (0.0, 0.5, 0.5, 1.0)
-"""The instants in steps."""
+SIMPSON = (1.0 / 6.0, 0.0, 4.0 / 6.0, 1.0 / 6.0)  # Simpson's weights of START, (HALF), MIDDLE, END
+AHEAD = (0.0, 0.5, 0.5, 1.0)  # The instants in steps
 
 
 class Motion(NamedTuple):

@@ -5,7 +5,6 @@ from math import inf
 
 import numpy as np
 
-from verify.arrays import Array, ComplexArray
 from verify.dynamics.linear_system import Stage, steady_beam
 from verify.dynamics.request import Request
 from verify.dynamics.result import Coupling, Margins
@@ -16,21 +15,31 @@ from verify.problem.beam import Beam, PointForce
 
 NEAR = 1e-3
 """Spacing of the forces that represent a couple, over the smaller of 1/k and L/50: it misses (k d)^2/24 = 4e-8."""
-Receptances = tuple[ComplexArray, ComplexArray]
-"""Deflections of places under a unit force at each, m/N, and slopes under a unit couple, rad/(N m), (n, n)."""
 
 
 def coupling_of(request: Request, basis: TimeBasis | None, stage: Stage) -> Coupling:
     """Largest sizes over the sliders of a run with last stage `stage`, with the loads of all sliders.
 
-    Friction mu N exerts a couple (h/2) mu N on the beam, which rotates the section and thereby moves the surface.
-    Raises InputError.
+    Friction mu N exerts a couple (h/2) mu N on the beam, which rotates the section and thereby moves the surface. The
+    receptances are deflections under unit forces at every place, and slopes under unit couples. Raises InputError.
     """
-    places, omega = np.array(request.starts), request.omega
-    if basis and request.start == "rest":
-        receptances = modal_receptances(basis, request, places)
+    places, omega, beam, hertz = np.array(request.starts), request.omega, request.beam, request.frequency_hz
+    couples = [couple(beam, x, hertz) for x in places.tolist()]
+    if basis and request.start == "rest":  # all modes; slopes with truncated ones, whose sum decays as slowly as 1/n
+        damping = request.damping_in(basis)
+        compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
+        shapes = [basis.shapes(places, derivative) for derivative in (0, 1)]
+        receptances = [np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes]
+        if basis.tail is not None:
+            receptances[1] += [basis.tail(loads, hertz, damping)(places, 1) for loads in couples]
     else:
-        receptances = field_receptances(request, places)
+        case = request.model, request.count, beam
+        forces = [(PointForce(position=x),) for x in places.tolist()]
+        fields = [
+            [steady_beam(*case, one, hertz, request.modal_damping).field for one in loads]
+            for loads in (forces, couples)
+        ]
+        receptances = [np.array([one.derivative(places, k) for one in fields[k]]) for k in (0, 1)]
     half = np.array([section_at(request.beam, x).surface_distance for x in request.starts])
     drive = [abs(stage.drive_shapes(places, derivative)[0]) for derivative in (0, 1)]
     normal, friction = np.zeros(len(places)), np.zeros(len(places))
@@ -47,30 +56,6 @@ def coupling_of(request: Request, basis: TimeBasis | None, stage: Stage) -> Coup
     )
 
 
-def modal_receptances(basis: TimeBasis, request: Request, places: Array) -> Receptances:
-    """Receptances by all modes, slopes including truncated modes, whose sum decays as slowly as 1/n."""
-    omega, hertz, damping = request.omega, request.frequency_hz, request.damping_in(basis)
-    compliance = 1.0 / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
-    shapes = [basis.shapes(places, derivative) for derivative in (0, 1)]
-    risen, turned = (np.array([(compliance * here) @ psi for here in psi.T], dtype=complex) for psi in shapes)
-    if basis.tail is not None:
-        turned += [basis.tail(couple(basis.beam, x, hertz), hertz, damping)(places, 1) for x in places.tolist()]
-    return risen, turned
-
-
-def field_receptances(request: Request, places: Array) -> Receptances:
-    """Receptances by steady fields of the model. Raises InputError."""
-    beam, hertz, risen, turned = request.beam, request.frequency_hz, [], []
-    for x in places.tolist():
-        by_force, by_couple = (
-            steady_beam(request.model, request.count, beam, loads, hertz, request.modal_damping).field
-            for loads in ((PointForce(position=x),), couple(beam, x, hertz))
-        )
-        risen.append(by_force.deflection(places))
-        turned.append(by_couple.slope(places))
-    return np.array(risen), np.array(turned)
-
-
 @lru_cache(maxsize=256)
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     """A unit couple at x, 1 N m, as five close forces from x inwards: a difference quotient of order 4.
@@ -85,8 +70,8 @@ def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
 
-def margins_of(request: Request, stage: Stage) -> Margins:
-    """Margins of a run with last stage `stage`, except those that depend on time steps.
+def margins_of(request: Request, stage: Stage, contact_rate: float = 0.0) -> Margins:
+    """Margins of a run with last stage `stage` and the fastest rate of its contact, rad/s.
 
     `lift_off` of point sliders is that of the run.
     """
@@ -96,22 +81,19 @@ def margins_of(request: Request, stage: Stage) -> Margins:
         falling = stage.omega**2 * float(abs(stage.drive_shapes(x, 0)[0]).max())
         lift_off = falling / request.gravity if request.gravity else inf
     square = 0.5 * float((abs(stage.drive_shapes(x, 1)[0]) ** 2).mean())
-    turns = abs(lossless_wavenumber(beam, hertz)) * beam.length
-    return Margins(lift_off=lift_off, nonlinearity=float(turns**2 * square))
-
-
-def presliding(request: Request) -> float | None:
-    """`Margins.presliding`, the largest of all feet."""
-    largest = 0.0
+    turns, slips = abs(lossless_wavenumber(beam, hertz)) * beam.length, list[float | None]()
     for slider, start in zip(request.sliders, request.starts, strict=True):
-        contact, section = slider.contact, section_at(request.beam, start)
+        contact, section = slider.contact, section_at(beam, start)
         if contact is None or contact.hard:
-            return None
+            slips.append(None)
+            continue
         compliances = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
         if all(along for _, along in compliances):
-            k = travelling_wavenumber(section, request.frequency_hz)
-            if k is None:
-                return None
-            ratio = max(across / along for across, along in compliances)
-            largest = max(largest, slider.mu * ratio / (k * section.surface_distance))
-    return largest
+            k, ratio = travelling_wavenumber(section, hertz), max(across / along for across, along in compliances)
+            slips.append(None if k is None else slider.mu * ratio / (k * section.surface_distance))
+    return Margins(
+        lift_off=lift_off,
+        nonlinearity=float(turns**2 * square),
+        presliding=None if None in slips or not request.feet else max((one for one in slips if one), default=0.0),
+        contact_step=contact_rate * stage.steps.dt,
+    )

@@ -34,8 +34,7 @@ GROWTH, SHRINK, SAFETY = 1.5, 0.5, 0.8
 """A step changes by at most these factors, since the acceleration is that of a time that depends on it."""
 LEAST = 1e-9  # step over the duration at which the run gives up
 
-SMALL = 1e-12
-"""Energy over EI/L of a tip that moves by a millionth of the length."""
+SMALL = 1e-12  # Energy over EI/L of a tip that moves by a millionth of the length
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,11 +150,6 @@ class _Run:
         driven = (self.drive * np.exp(1j * self.omega * time)).real.ravel()
         return model.vector(loads - inertia[..., 0]) + driven, centrifugal - by_state, gyroscopic
 
-    def begin(self, state: Array, rate: Array) -> _Instant:
-        """The first instant, in balance."""
-        forces = self.external(0.0, state, rate)[0] - self.model.vector(self.model.elastic(state)[0])
-        return _Instant(0.0, state, rate, self.model.solve(self.model.band(self.mass), forces))
-
     def step(self, now: _Instant, h: float, jerk: Array) -> tuple[_Instant, float] | None:
         """(next instant, error of the step over the tolerance); None where Newton's method does not converge.
 
@@ -200,9 +194,13 @@ class _Run:
         """Steps to the last time, interpolated to all."""
         model, end = self.model, float(times[-1])
         state = model.rest if start is None else start
-        now = self.begin(state, np.zeros_like(state) if start_rate is None else start_rate)
+        rate = np.zeros_like(state) if start_rate is None else start_rate
+        forces = self.external(0.0, state, rate)[0] - model.vector(model.elastic(state)[0])
+        now = _Instant(0.0, state, rate, model.solve(model.band(self.mass), forces))  # in balance
         instants, jerk, placed, rejected = [now], np.zeros_like(state), 0.0, 0
-        h = self._first_step(now, end)
+        # in the first step the initial acceleration moves the beam by the tolerance
+        size = abs(now.acceleration[:, 0]).max()
+        h = min(1e-2 * end, (self.tolerance * model.beam.length / size) ** 0.5 if size else 1e-3 * end)
         while now.time < end * (1.0 - 1e-12):
             h = min(h, end - now.time)
             # the acceleration belongs to t + (ALPHA_M - ALPHA_F) times the step before: move it to where this one does
@@ -221,11 +219,6 @@ class _Run:
             instants.append(now)
             progress(now.time / end)
         return self._motion(instants, times, rejected)
-
-    def _first_step(self, now: _Instant, end: float) -> float:
-        """The step in which the initial acceleration moves the beam by the tolerance, at most 1 % of the duration."""
-        size = abs(now.acceleration[:, 0]).max()
-        return min(1e-2 * end, (self.tolerance * self.model.beam.length / size) ** 0.5 if size else 1e-3 * end)
 
     def _motion(self, instants: list[_Instant], times: Array, rejected: int) -> NonlinearMotion:
         from scipy.interpolate import CubicHermiteSpline

@@ -35,8 +35,7 @@ from verify.validation import check_integer, check_number
 BAND = 7  # an element couples two nodes of four values
 FINE = 16  # parts of an element for splines of the shape at rest: their error, of order 4 too, is 1e-5 of the element's
 RESTRAINT = 0.1  # part of EA at four points, in EI/l^2: its error is far below that of bending
-QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
-"""Rotation by 90 degrees."""
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # Rotation by 90 degrees
 
 
 class Forces(NamedTuple):
@@ -56,8 +55,7 @@ class Forces(NamedTuple):
         return Forces(share * self.tip, share * self.moment, share * self.follower, share * self.gravity)
 
 
-NONE = Forces()
-"""No loads."""
+NONE = Forces()  # No loads
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +141,11 @@ class PlaneElements:
 
         full = line_basis(self.nodes, shear=False)
         rows, axial, bending = [], [], []
-        ei, ea = self.parts.of("bending_stiffness"), self._axial
+        ei = self.parts.of("bending_stiffness")
+        if self.axial_stiffness is None:
+            ea = np.array([piece.axial_stiffness for piece in self.parts.pieces]).repeat(self.parts.shares)
+        else:  # unknown areas: EA of all
+            ea = self.axial_stiffness * np.nan_to_num(self.parts.axial_stiffnesses, nan=1.0)
         restraint = np.minimum(RESTRAINT * ei / np.diff(self.nodes) ** 2, ea)
         for basis in (full, CellBasis(full.mesh, full.elem, intorder=3)):
             slopes, bends = (np.stack([w[k].grad[0] for w in basis.basis[:4]], axis=-1) for k in (0, 1))
@@ -153,14 +155,6 @@ class PlaneElements:
             axial.append(stretch[:, None] * basis.dx)
             bending.append((0.0 if two else 1.0) * ei[:, None] * basis.dx)
         return np.concatenate(rows, 1), np.concatenate(axial, 1), np.concatenate(bending, 1)
-
-    @cached_property
-    def _axial(self) -> Array:
-        """EA of the elements, (n,), N."""
-        if self.axial_stiffness is not None:
-            shares = self.parts.axial_stiffnesses
-            return self.axial_stiffness * np.where(np.isnan(shares), 1.0, shares)  # unknown areas: EA of all
-        return np.array([piece.axial_stiffness for piece in self.parts.pieces]).repeat(self.parts.shares)
 
     @cached_property
     def element_masses(self) -> Array:

@@ -25,15 +25,11 @@ from verify.problem.beam import Beam, rigid_lines
 
 _END = {"clamped": 0, "pinned": 1, "guided": 3, "free": 4}
 """Minor of the quantities that a support sets to zero; that of the others is 4 less this."""
-_SHORT, _TERMS = 2.25, 16
-"""Largest |wavenumber l|^2 for power series, and their number of terms."""
-_CLOSE = 16.0
-"""(sigma1 - sigma2)^2 / (sigma1 sigma2) below which two squares of wavenumbers are close."""
-_TINY = 1e-120
-"""Replaces a minor that is exactly zero, where a stiffness is infinite."""
+_SHORT, _TERMS = 2.25, 16  # Largest |wavenumber l|^2 for power series, and their number of terms
+_CLOSE = 16.0  # (sigma1 - sigma2)^2 / (sigma1 sigma2) below which two squares of wavenumbers are close
+_TINY = 1e-120  # Replaces a minor that is exactly zero, where a stiffness is infinite
 _NOTHING = Station()
-_CANCELLED = 1e-3
-"""Ratio of a determinant to its products below which another form computes it."""
+_CANCELLED = 1e-3  # Ratio of a determinant to its products below which another form computes it
 
 Minors = tuple[float, float, float, float, float]
 

@@ -16,8 +16,7 @@ from verify.problem.beam import Beam, check_features
 from verify.problem.cross_section import Piece
 from verify.validation import check_integer
 
-HIGHEST = 10**9
-"""Highest mode number."""
+HIGHEST = 10**9  # Highest mode number
 # beta L = (n + c) pi + s(n) g atan(exp(-2 y/g)), the exponential form of cos y cosh y = +-1 and its kin.
 # pair -> (c, sign rule, g); the sign rule is 0, a constant, or "odd" for +1 at odd n and -1 at even n.
 _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {

@@ -14,8 +14,7 @@ from verify.exact.closed_forms import wavenumber_length
 from verify.problem.beam import Beam
 from verify.settings import WALLS
 
-_LAW_TO = 2.5
-"""mu up to which errors follow `expected_error` within a third of its terms from 20 parts on (measured)."""
+_LAW_TO = 2.5  # mu up to which errors follow `expected_error` within a third of its terms from 20 parts on (measured)
 _GREGORY = WALLS["gregory"].corrections
 
 

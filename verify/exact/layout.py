@@ -21,8 +21,7 @@ from verify.problem.beam import Beam
 from verify.problem.device import Device
 from verify.problem.point_attachments import Attachment
 
-SAME_PLACE = 1e-12
-"""Distance, relative to the beam's length, below which two positions are one station."""
+SAME_PLACE = 1e-12  # Distance, relative to the beam's length, below which two positions are one station
 HELD = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Indices of w, psi, M, V that a support sets to zero."""
 

@@ -19,10 +19,8 @@ from verify.problem.supports import FIXED
 if TYPE_CHECKING:
     from verify.arrays import Array
 
-FLATNESS = 5.0
-"""Smallest width over thickness for thin-plate theory."""
-MOST_UNKNOWNS = 25_000
-"""Largest number of unknowns of a Ritz solution, about 2 s."""
+FLATNESS = 5.0  # Smallest width over thickness for thin-plate theory
+MOST_UNKNOWNS = 25_000  # Largest number of unknowns of a Ritz solution, about 2 s
 
 
 def plate_error(beam: Beam, mode: int) -> float:

@@ -17,20 +17,14 @@ from verify.arrays import Array, Indices
 from verify.errors import InputError
 from verify.exact.layout import HELD, SAME_PLACE, BeamLayout
 
-ROTATION = 1
-"""Index of the rotation in the state (w, psi, M, V)."""
+ROTATION = 1  # Index of the rotation in the state (w, psi, M, V)
 _REACH, _TERMS = 3.0, 32
 """Largest wavenumber times length of a piece (e^3 costs one digit), and number of terms of its Taylor series."""
-_MOST_PIECES = 300_000
-"""Largest number of pieces of one solution, 1.5 kB each."""
-_LOWER, _UPPER = 5, 3
-"""Number of diagonals of the banded system below and above the main one."""
-_TRIES = 3
-"""Number of excitations per mode, one of which is far from orthogonal to the mode."""
-_PAIR = 1e-9
-"""Relative distance of two frequencies that coincide."""
-_NUDGE = 7e-16
-"""Relative step off a resonance at which the system is exactly singular."""
+_MOST_PIECES = 300_000  # Largest number of pieces of one solution, 1.5 kB each
+_LOWER, _UPPER = 5, 3  # Number of diagonals of the banded system below and above the main one
+_TRIES = 3  # Number of excitations per mode, one of which is far from orthogonal to the mode
+_PAIR = 1e-9  # Relative distance of two frequencies that coincide
+_NUDGE = 7e-16  # Relative step off a resonance at which the system is exactly singular
 
 
 class Division(msgspec.Struct, frozen=True, eq=False, kw_only=True):

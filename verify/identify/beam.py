@@ -28,8 +28,7 @@ from verify.problem.beam import Beam, PointForce, check_features
 from verify.problem.cross_section import set_fields
 from verify.problem.point_attachments import PointSpring
 
-WALLS = ("wall_left", "wall_right")
-"""Rotational stiffness of the walls, N m/rad."""
+WALLS = ("wall_left", "wall_right")  # Rotational stiffness of the walls, N m/rad
 FIRST_WALL, WALL_RANGE, RANGE = 20.0, (1e-4, 1e6), 1e3
 """Initial stiffness of a clamped wall and its bounds, times EI/L; bounds of E and rho, a factor to both sides."""
 

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from verify.arrays import Array, Indices
+from verify.arrays import Array, BoolArray, Indices
 from verify.errors import InputError, near_name
 from verify.formatting import one_line
 
@@ -209,17 +209,12 @@ def fit(
     if solved.status < 1:
         raise InputError(f"start = {dict(start)!r}: the fit does not converge, start nearer to the solution")
     theta, logs, least = solved.x, problem.logs, 2.0 * float(solved.cost)
-    norms = np.linalg.norm(solved.jac, axis=0)
-    size, scale = np.where(norms > 0.0, norms, 1.0), np.where(logs, 1.0, abs(theta))
-    _, scales, directions = np.linalg.svd(solved.jac / size, full_matrices=False)
-    loose = scales * SINGULAR < scales[0]  # the data do not determine these combinations of parameters
-    freedom = n - p + int(loose.sum())
+    scale = np.where(logs, 1.0, abs(theta))
+    undetermined, involved, unit_sds = determined(solved.jac, scale)
+    freedom = n - p + undetermined
     sigma = noise if noise is not None else float(np.sqrt(least / freedom))
     quantile = float(ndtri(0.975) if noise is not None else stdtrit(freedom, 0.975))
-    changes = abs(directions[loose]) / (size * scale + 1e-300)
-    involved = (changes > INVOLVED * changes.max(axis=1, keepdims=True)).any(axis=0) | (norms == 0.0)
-    inverse = ((directions[~loose] / scales[~loose, None]) ** 2).sum(axis=0)
-    sds = np.where(involved, np.inf, sigma * np.sqrt(inverse) / size)
+    sds = np.where(involved, np.inf, sigma * unit_sds)
     reach = np.minimum(quantile * sds, 1e3 * np.maximum(1.0, abs(theta)))
     profiles = bool((reach > HARD * scale).any()) if profiles is None else profiles
     (rest, exact, curve), values, estimates = problem.at(theta), problem.values(theta), dict[str, Estimate]()
@@ -228,7 +223,7 @@ def fit(
         one, interval = model.known[name], (float(ends[0][i]), float(ends[1][i]))
         others = ", ".join(other for other, k in zip(names, involved, strict=True) if k and other != name)
         sd, profile, reason = float(sds[i] * values[i] if logs[i] else sds[i]), None, ""
-        if norms[i] == 0.0:
+        if not solved.jac[:, i].any():
             reason = "the data do not depend on it"
         elif involved[i] and others:
             reason = f"the data determine only its combination with {others}, fix one of them"
@@ -250,6 +245,21 @@ def fit(
     tests = {LARGE: fitness, COLOURED: white, UNLIKELY: 0.0 if model.logs and not noise and sigma > ROUGH else None}
     rejected = tuple(words for words, chance in tests.items() if chance is not None and chance < REJECTED)
     return Fit(estimates, curve, -rest, sigma, freedom, ratio, fitness, white, rejected)
+
+
+def determined(jacobian: Array, scale: Array) -> tuple[int, BoolArray, Array]:
+    """(number of combinations of parameters that the data leave open, parameters in them, sds for noise of 1).
+
+    By a Jacobian (n, p) over coordinates of typical sizes `scale`, (p,).
+    """
+    norms = np.linalg.norm(jacobian, axis=0)
+    size = np.where(norms > 0.0, norms, 1.0)
+    _, scales, directions = np.linalg.svd(jacobian / size, full_matrices=False)
+    loose = scales * SINGULAR < scales[0]
+    changes = abs(directions[loose]) / (size * scale + 1e-300)
+    involved = (changes > INVOLVED * changes.max(axis=1, keepdims=True)).any(axis=0) | (norms == 0.0)
+    inverse = ((directions[~loose] / scales[~loose, None]) ** 2).sum(axis=0)
+    return int(loose.sum()), involved, np.sqrt(inverse) / size
 
 
 def whiteness(rest: Array) -> float | None:

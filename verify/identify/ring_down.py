@@ -17,22 +17,14 @@ from verify.errors import InputError
 from verify.identify.fit import COLOURED, Fit, Model, Parameter, fit
 from verify.validation import check_integer
 
-MOST_MODES = 8
-"""Modes that are looked for; a record of a beam rarely has more above its noise."""
-PENCIL = 600
-"""Samples of the start, thinned from the record: its Hankel matrix costs their cube."""
-MANY = 3000
-"""Samples by which modes of a record of more than twice as many are counted before all are used."""
-EVEN = 1e-3
-"""Largest deviation of a time from even spacing, over the spacing, that the start ignores."""
-GAIN = 10.0
-"""Least fall of Schwarz's criterion by a mode: odds of 150 to 1."""
-FEWEST = 16
-"""Samples of the shortest record."""
-GROWTH = 100.0
-"""Exponent of a growth that the least squares may try: e^100 squared is still a number."""
-GRAIN = 1e-8
-"""Amplitude of a mode over the largest of its channel, below which it is one of rounding."""
+MOST_MODES = 8  # Modes that are looked for; a record of a beam rarely has more above its noise
+PENCIL = 600  # Samples of the start, thinned from the record: its Hankel matrix costs their cube
+MANY = 3000  # Samples by which modes of a record of more than twice as many are counted before all are used
+EVEN = 1e-3  # Largest deviation of a time from even spacing, over the spacing, that the start ignores
+GAIN = 10.0  # Least fall of Schwarz's criterion by a mode: odds of 150 to 1
+FEWEST = 16  # Samples of the shortest record
+GROWTH = 100.0  # Exponent of a growth that the least squares may try: e^100 squared is still a number
+GRAIN = 1e-8  # Amplitude of a mode over the largest of its channel, below which it is one of rounding
 RELEASE, SWING, CLEARER, QUIET, BRIEF = 0.9, 0.3, 0.5, 1e-3, 0.2
 """Deflection of a beam that is released, over the largest before it swings back by SWING of the largest of all; noise
 without what is before, over that of all; noise over the range that no load leaves; damping ratio of modes that may be
@@ -43,14 +35,11 @@ fitted to a load."""
 class RingMode:
     """A mode of a record; intervals contain the true value with a probability of 95 % if the noise is white."""
 
-    hz: float
-    """Damped frequency, as it is counted in the record."""
+    hz: float  # Damped frequency, as it is counted in the record
     hz_interval: tuple[float, float]
-    zeta: float
-    """Damping ratio; negative where the record grows."""
+    zeta: float  # Damping ratio; negative where the record grows
     zeta_interval: tuple[float, float]
-    amplitude: tuple[float, ...]
-    """At the first sample, of every channel, in its unit; 0 of a constant one."""
+    amplitude: tuple[float, ...]  # At the first sample, of every channel, in its unit; 0 of a constant one
 
     @property
     def halves(self) -> tuple[float, float]:
@@ -74,10 +63,8 @@ class RingDown:
     modes: tuple[RingMode, ...]
     noise: float
     white: bool
-    start: float = 0.0
-    """Time of the first sample that the fit uses, s."""
-    rate: float = np.inf
-    """Mean number of samples a second."""
+    start: float = 0.0  # Time of the first sample that the fit uses, s
+    rate: float = np.inf  # Mean number of samples a second
 
     @property
     def hertz(self) -> Array:

@@ -26,16 +26,12 @@ SPARE, GUESS, SPREAD, SOFT = 2, 0.01, 0.04, (0.0, 0.03, 0.1, 0.2, 0.35, 0.6)
 frequencies; spread of the latter beyond which a frequency is of no mode; compliances over L/EI that are tried."""
 FIRST, RIGID, WIDE, RANGE = 0.02, 1e-6, 0.5, 1e3
 """Compliance over L/EI: initial, least. Relative half width of an EI that is not known; range of EI, to both sides."""
-ROUGH = 1e-3
-"""Error of a frequency, relative, whose effect on EI is stated."""
+ROUGH = 1e-3  # Error of a frequency, relative, whose effect on EI is stated
 LAWS = {"a constant loss factor": 0.0, "viscosity (in proportion to f)": 1.0, "drag (in proportion to 1/f)": -1.0}
 """Powers of the frequency in damping ratios."""
-FAST = 0.45
-"""Frequency over the sampling rate above which that of a mode above half the rate may appear."""
-ALIKE = 0.01
-"""Relative difference of frequencies up to which they are one."""
-QUANTILE = 1.96
-"""Half width of a 95 % interval over its standard deviation."""
+FAST = 0.45  # Frequency over the sampling rate above which that of a mode above half the rate may appear
+ALIKE = 0.01  # Relative difference of frequencies up to which they are one
+QUANTILE = 1.96  # Half width of a 95 % interval over its standard deviation
 
 
 @dataclass(frozen=True)
@@ -64,10 +60,8 @@ class Strip:
     damping: Damping
     modes: tuple[tuple[int, int, RingMode], ...]
     left_out: tuple[float, ...]
-    off: Array
-    """Frequencies of `modes` over the fitted ones, less 1."""
-    rough: bool
-    """Whether they differ by more than their noise, so that the intervals are by the misfit."""
+    off: Array  # Frequencies of `modes` over the fitted ones, less 1
+    rough: bool  # Whether they differ by more than their noise, so that the intervals are by the misfit
     spread: float
     """Relative change of EI by independent errors of 0.1 % in the frequencies, as of theory; 0 for a rigid clamp."""
 

@@ -18,10 +18,9 @@ from verify.linear.time_basis import TimeBasis
 from verify.problem.beam import Beam, PointForce, PointLoad
 from verify.problem.device import Device
 from verify.settings import DEFAULT, check_setting
-from verify.validation import as_tuple, check_integer, check_type
+from verify.validation import as_tuple, check_type
 
-Devices: TypeAlias = Device | Sequence[Device]
-"""One device, or several."""
+Devices: TypeAlias = Device | Sequence[Device]  # One device, or several
 
 VERBS = ("modes", "harmonic", "imposed", "receptance", "time_basis", "buckling_load")
 """Methods of a model that compute."""
@@ -173,15 +172,6 @@ class BeamModel(ABC):
     def cut_at(self, positions: Iterable[float]) -> "BeamModel":
         """The model for moments or actuators at positions, m: elements with nodes, chains with elastic ends there."""
         return self
-
-    def check_n_modes(self, n_modes: int) -> None:
-        """Raise InputError unless the model has `n_modes` elastic modes."""
-        check_integer("n_modes", n_modes, 1)
-        if n_modes > self.n_elastic:
-            raise InputError(
-                f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
-                "modes, raise count"
-            )
 
     def check_stationed(
         self,

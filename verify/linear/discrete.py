@@ -25,7 +25,7 @@ from verify.linear.time_basis import TimeBasis, check_supported
 from verify.problem.beam import PointForce, PointLoad, PointMoment, is_lossless, rigid_lines
 from verify.problem.device import Device
 from verify.problem.point_attachments import PointMass
-from verify.validation import check_choice, check_number
+from verify.validation import check_choice, check_integer, check_number
 
 
 class DiscreteModel(BeamModel):
@@ -152,7 +152,12 @@ class DiscreteModel(BeamModel):
 
     def modes(self, n_modes: int) -> Modes:
         """The first elastic modes. Raises InputError for too many, within rounding, and for compression to buckling."""
-        self.check_n_modes(n_modes)
+        check_integer("n_modes", n_modes, 1)
+        if n_modes > self.n_elastic:
+            raise InputError(
+                f"n_modes = {n_modes}: the {self.name} model at count = {self.count} has {self.n_elastic} elastic "
+                "modes, raise count"
+            )
         self.check_memory(n_modes)
         try:
             values, vectors = self.stable_system.modes(n_modes)
@@ -299,10 +304,10 @@ class DiscreteModel(BeamModel):
         result = np.full((len(frequencies), len(at), len(read)), np.nan, dtype=complex)
         for i, (omega, w2) in enumerate(zip(omegas.tolist(), omega2.tolist(), strict=True)):
             try:
-                response = self.stable_system.harmonic(loads, w2, self.lossy_stiffness(omega))
+                bent, moved, _ = self.stable_system.steady(loads, w2, self.lossy_stiffness(omega))
             except np.linalg.LinAlgError:
                 continue
-            result[i] = self.line(response)(read, 0)
+            result[i] = self.line(bent + moved)(read, 0)
         return result
 
     def _loads(self, acting: Sequence[PointLoad], blocked: Sequence[PointForce]) -> ComplexArray:

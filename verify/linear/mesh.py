@@ -58,8 +58,12 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     if not equal:
         steps = [grading ** (np.arange(n) / max(n - 1, 1)) for n in shares]
         lengths = [s * (piece.length / unit / s.sum()) for piece, s in zip(pieces, steps, strict=True)]
-    ratios = np.ones((1, 4)) if equal else _ratios(beam.base_section, pieces)
-    moduli, moments, masses, areas = np.repeat(ratios, shares, axis=0).T
+    every, ratios = (beam.base_section, *pieces), np.ones((1, 4))  # E, I, rho A, A of every piece over the beam's own
+    if not equal and any(p.youngs_modulus is None for p in every):  # without a shape E is 1, I is EI
+        ratios = np.array([(1.0, p.bending_stiffness, p.mass_per_length, np.nan) for p in every])
+    elif not equal:
+        ratios = np.array([(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) for p in every], dtype=float)
+    moduli, moments, masses, areas = np.repeat(ratios if equal else ratios[1:] / ratios[0], shares, axis=0).T
     return Parts(
         unit=unit,
         lengths=np.concatenate(lengths),
@@ -71,19 +75,6 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
         pieces=pieces,
         shares=shares,
     )
-
-
-def _ratios(base: Piece, pieces: tuple[Piece, ...]) -> Array:
-    """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
-
-    Without a shape E is 1, I is EI, and areas are NaN.
-    """
-    every = (base, *pieces)
-    if any(p.youngs_modulus is None for p in every):
-        table = np.array([(1.0, p.bending_stiffness, p.mass_per_length, np.nan) for p in every])
-    else:
-        table = np.array([(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) for p in every], dtype=float)
-    return np.asarray(table[1:] / table[0])
 
 
 def cut_pieces(beam: Beam) -> tuple[Piece, ...]:

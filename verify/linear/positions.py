@@ -11,16 +11,12 @@ from verify.problem.beam import Beam, PointForce, PointLoad, PointMoment, check_
 from verify.problem.supports import check_free
 from verify.validation import as_tuple, check_position
 
-Numbers: TypeAlias = float | Sequence[float] | Array
-"""A number, a list or an array."""
-Forces: TypeAlias = PointForce | Sequence[PointForce]
-"""One force, or several."""
-Loads: TypeAlias = PointLoad | Sequence[PointLoad]
-"""One force or moment, or several."""
+Numbers: TypeAlias = float | Sequence[float] | Array  # A number, a list or an array
+Forces: TypeAlias = PointForce | Sequence[PointForce]  # One force, or several
+Loads: TypeAlias = PointLoad | Sequence[PointLoad]  # One force or moment, or several
 Kind = TypeVar("Kind", bound=PointLoad)
 Values = TypeVar("Values", bound=np.ndarray[Any, Any])
-SLACK = 1e-12
-"""Distance of a position beyond an end, relative to the length, that is rounding."""
+SLACK = 1e-12  # Distance of a position beyond an end, relative to the length, that is rounding
 
 
 def real_array(field: str, value: object, unit: str) -> Array:

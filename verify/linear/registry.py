@@ -5,10 +5,8 @@ from verify.linear.base import BeamModel
 from verify.problem.beam import Beam
 from verify.registry import Registry
 
-EXACT = "analytic"
-"""Name of the exact beam."""
-MEAN = "mean"
-"""Name of the mean of the models below and above the exact frequencies."""
+EXACT = "analytic"  # Name of the exact beam
+MEAN = "mean"  # Name of the mean of the models below and above the exact frequencies
 
 
 def _problem_of(model: object) -> str:

@@ -19,10 +19,8 @@ import numpy as np
 
 from verify.arrays import Array, ComplexArray
 
-Powers = tuple[float, ...]
-"""Coefficients of a polynomial, ascending."""
-REAL = 1e-9
-"""Largest imaginary over absolute part of a root that is real but for rounding."""
+Powers = tuple[float, ...]  # Coefficients of a polynomial, ascending
+REAL = 1e-9  # Largest imaginary over absolute part of a root that is real but for rounding
 
 
 class Scheme(NamedTuple):

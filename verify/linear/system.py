@@ -17,22 +17,15 @@ from verify.errors import InputError
 from verify.formatting import one_line
 from verify.linear.factored import FactoredSystem
 
-DENSE = 150
-"""Largest number of unknowns for one singular value decomposition, which is then faster than Lanczos."""
-MOST_MODES = 2000
-"""Largest number of unknowns for all modes: ten seconds, growing with the cube."""
-RESONANCE = 1e-9
-"""Relative frequency distance to an undamped resonance below which a response is rounding."""
+DENSE = 150  # Largest number of unknowns for one singular value decomposition, which is then faster than Lanczos
+MOST_MODES = 2000  # Largest number of unknowns for all modes: ten seconds, growing with the cube
+RESONANCE = 1e-9  # Relative frequency distance to an undamped resonance below which a response is rounding
 HARD = 100.0
 """Lower bound over the lowest bending eigenvalue, about, above which a foundation clusters the eigenvalues."""
-REFINED = 6
-"""Largest number of iterative refinements: one for equal parts, more on soft supports."""
-LOST = 1e-4
-"""Largest last correction of a refinement, relative: fewer digits are no answer."""
-FEW = 4
-"""Largest number of frequencies solved one by one: all modes cost more than a few factorisations."""
-SUPERPOSED = 600
-"""Largest number of unknowns for superposition of all modes at many frequencies."""
+REFINED = 6  # Largest number of iterative refinements: one for equal parts, more on soft supports
+LOST = 1e-4  # Largest last correction of a refinement, relative: fewer digits are no answer
+FEW = 4  # Largest number of frequencies solved one by one: all modes cost more than a few factorisations
+SUPERPOSED = 600  # Largest number of unknowns for superposition of all modes at many frequencies
 
 
 Response: TypeAlias = tuple[Any, Any, Any]
@@ -347,13 +340,6 @@ class StructuralSystem(FactoredSystem):
         parts = solve(np.hstack([loads.real, loads.imag]), both)
         bent, moved, forces = (part[:, :k] + 1j * part[:, k:] for part in parts)
         return bent, moved, forces
-
-    def harmonic(
-        self, loads: Any, omega2: float, stiffness: Any = None, devices: Sequence[tuple[Any, complex]] = ()
-    ) -> Any:
-        """The response (n, k) of `steady` to loads (n, k), without constraints. Raises LinAlgError."""
-        bent, moved, _ = self.steady(loads, omega2, stiffness, devices)
-        return bent + moved
 
     def _check_resonance(self, solve: Callable[[Any], Any], response: Any, omega2: float) -> None:
         """Raise LinAlgError within `RESONANCE` of a resonance, from the response (n, 1) to a random load.

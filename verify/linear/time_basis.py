@@ -14,8 +14,7 @@ from verify.formatting import one_line
 from verify.linear.positions import Numbers, positions_on, reshape_like
 from verify.problem.beam import Beam, PointLoad, PointMoment
 
-Ratio: TypeAlias = float | Array
-"""Damping ratio of all modes, or of each mode, (n,)."""
+Ratio: TypeAlias = float | Array  # Damping ratio of all modes, or of each mode, (n,)
 
 
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):

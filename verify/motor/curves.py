@@ -30,10 +30,8 @@ from verify.motor.steady_state import (
     steady_state,
 )
 
-FINE = 32
-"""Number of periods of a free run with samples at every step; later one sample per period."""
-LEVEL = 1.0 - 1.0 / e
-"""Fraction of the change after a time constant."""
+FINE = 32  # Number of periods of a free run with samples at every step; later one sample per period
+LEVEL = 1.0 - 1.0 / e  # Fraction of the change after a time constant
 STEADY = 0.05
 """Largest error of a free speed, relative to it. A speed and a time constant are specified to some per cent; the error
 itself is part of the result. A wave that is partly standing changes the speed by much more in half a wavelength."""

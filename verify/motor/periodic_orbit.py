@@ -10,14 +10,13 @@ from msgspec.structs import replace
 from verify.arrays import Array, ComplexArray
 from verify.dynamics.arguments import PrescribedSlider
 from verify.dynamics.contact_assembly import assemble
-from verify.dynamics.result import EndState, Motion
+from verify.dynamics.result import FOOT_STATE, EndState, Motion
 from verify.errors import InputError
 from verify.formatting import one_line
 from verify.motor.steady_state import MotorCase
 
 ROUNDS = 12
-DIFFERENCE = 1e-4
-"""Step of the difference quotients, over the scale of a coordinate."""
+DIFFERENCE = 1e-4  # Step of the difference quotients, over the scale of a coordinate
 REPEATS = 1e-3
 """Largest residual, over the scale of a coordinate; impacts on dashpots are discontinuous in the time step."""
 
@@ -60,9 +59,11 @@ def periodic_orbit(
     def shifted(state: EndState, feet: Array, by: Array) -> EndState:
         """A state with feet whose free coordinates are shifted."""
         assert state.contact is not None
-        feet = feet.copy()
+        feet, records = feet.copy(), state.contact.feet.copy()
         feet.flat[free] += by * size
-        return replace(state, contact=replace(state.contact, feet=feet))
+        for name, values in zip(FOOT_STATE, feet.T, strict=True):
+            records[name] = values
+        return replace(state, contact=state.contact._replace(feet=records))
 
     def period(start: Motion, by: Array) -> Motion:
         return case.run(1.0, 2, replace(start, end=shifted(start.end, start.end.feet, by)), speed)

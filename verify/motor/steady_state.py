@@ -38,8 +38,7 @@ Figure = Literal["force", "normal force", "fractions", "powers"]
 BATCHES = 16
 FIRST = 48
 """Periods of the first two windows: batches of 3, then of 6 periods, multiples of subharmonics of order 2 and 3."""
-PERIODS = 12_500
-"""Default for the largest number of periods until the means converge."""
+PERIODS = 12_500  # Default for the largest number of periods until the means converge
 CHAOTIC = 768
 """Periods above which the tolerance is that of a nonperiodic motion; in shorter windows its batches are correlated."""
 TOLERANCES: "dict[Figure, tuple[float, float]]" = {
@@ -64,8 +63,7 @@ GROUPS: "dict[str, Figure]" = {
 }
 """Criterion of convergence of a mean; that of all others is the force."""
 UNITS: "dict[Figure, str]" = {"force": " N", "normal force": " N", "fractions": "", "powers": " W"}
-TIMED = 16
-"""Periods over which the time of a period is measured, to some per cent."""
+TIMED = 16  # Periods over which the time of a period is measured, to some per cent
 SLIPS = 8.0
 """Slider displacement in the first window over mu N / (stiffness of the softest point), at which all points slip."""
 

@@ -124,5 +124,4 @@ def quintic(times: Array, rows: Array) -> "PPoly":
     return PPoly(np.stack([*high, 0.5 * turn, rate, value]), times)
 
 
-FIXED = Base()
-"""A base that does not move."""
+FIXED = Base()  # A base that does not move

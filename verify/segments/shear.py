@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from verify.arrays import Array, Curve, Numeric
-from verify.segments.bodies import Body
+from verify.segments.attachments import Body
 from verify.segments.chain import Chain, Motions, right_of
 from verify.segments.walls import tension_excess, wall_factors
 

@@ -13,8 +13,7 @@ from verify.linear.system import StructuralSystem
 from verify.problem.beam import is_stepped, rigid_lines
 from verify.problem.supports import FIXED
 from verify.segments import shear
-from verify.segments.attachments import attachment_weights
-from verify.segments.bodies import Attached
+from verify.segments.attachments import Attached, attachment_weights
 from verify.segments.chain import Chain, Motions, at_joints, link_inertia, link_mass, plain_factors, selection, squares
 from verify.segments.walls import reading_factors, tension_excess, wall_factors
 from verify.settings import WALLS, Attachment, Joints, Wall

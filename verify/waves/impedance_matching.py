@@ -27,8 +27,7 @@ from verify.problem.beam import Beam, check_features, check_frequency
 from verify.problem.device import Device, of_impedance
 from verify.validation import check_number, check_type
 
-_DECAY = np.array([1j, 1.0])
-"""q in e^{-q k x} away from a source: a wave, and a near field."""
+_DECAY = np.array([1j, 1.0])  # q in e^{-q k x} away from a source: a wave, and a near field
 
 
 class Ending(msgspec.Struct, frozen=True):

@@ -10,14 +10,11 @@ from verify.waves.driven_case import DrivenCase, unit_waves
 from verify.waves.two_waves import Waveguide, minimum_near, reflections
 from verify.waves.window import Window, middle_half
 
-SEARCH_SPAN = 0.015
-"""Half width of the frequency search, relative to the drive's frequency."""
-PHASES_DEG = (5.0, 175.0)
-"""Range of the search in |phase| between the two forces, degrees."""
+SEARCH_SPAN = 0.015  # Half width of the frequency search, relative to the drive's frequency
+PHASES_DEG = (5.0, 175.0)  # Range of the search in |phase| between the two forces, degrees
 EXCESS, POINTS = 1.1, 801
 """Of a band: standing-wave ratio at its ends over the least, number of frequencies between which it is interpolated."""
-ROUNDING = 1e-13
-"""Excess of a reflection over its limit that is rounding."""
+ROUNDING = 1e-13  # Excess of a reflection over its limit that is rounding
 _ZOOM, _LEVELS, _SHARP = 17, 13, 1e-12
 """Points per refinement, number of refinements in phase (to 1e-12 rad), last relative interval in frequency."""
 

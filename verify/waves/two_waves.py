@@ -16,8 +16,7 @@ from verify.waves.window import Window, check_span, check_wavenumber, check_wave
 
 STANDING, ROUNDING = 1e-12, 1e-13
 """1 - Gamma below which a wave is standing, and deflection over `unit_response` times force that is rounding."""
-_REACH = 0.04
-"""Largest relative distance of a fitted wavenumber from that of the beam."""
+_REACH = 0.04  # Largest relative distance of a fitted wavenumber from that of the beam
 
 
 def reflections(forward: ComplexArray, backward: ComplexArray) -> Array:

@@ -11,8 +11,7 @@ from verify.problem.beam import Beam
 from verify.validation import check_type, python_scalar
 
 Window = tuple[float, float]
-MOST_HALVES = 10_000
-"""Largest number of half wavelengths in a window, limited by memory."""
+MOST_HALVES = 10_000  # Largest number of half wavelengths in a window, limited by memory
 _SECTION = ("bending_stiffness", "mass_per_length", "extreme_fibre", "rotary_inertia", "shear_stiffness")
 _DEPENDS = {"euler-bernoulli": _SECTION[:3], "rayleigh": _SECTION[:4], "timoshenko": _SECTION}
 """Section properties on which waves and surface motion depend, by theory."""
