@@ -11,10 +11,7 @@ from tests.reference.piezo_bar import Layer, bar_constants, respond
 from verify.actuators.materials import EPS0, PIEZO
 from verify.actuators.resonances import antiresonances, branch, coupling, impedance, resonances
 from verify.actuators.transducers import Bar31, Bar33, EndMass, Langevin, Stack
-from verify.analysis.solution_cache import SolutionCache
 from verify.errors import InputError
-from verify.quantities import evaluate
-from verify.scene.load import scene_from
 
 PZT4 = PIEZO["pzt-4"]
 LOSSES = {"dielectric_loss": 0.004, "mechanical_loss": 0.002, "piezoelectric_loss": 0.003}
@@ -81,18 +78,6 @@ def test_own_material_and_losses():
             replace(own, **{name: value})
     with pytest.raises(InputError, match="source of energy"):
         replace(lossy, piezoelectric_loss=0.0042)
-
-
-def test_figures_to_their_printed_digits():
-    one = PZT4.derived
-    assert (one.s11, one.s33) == pytest.approx((12.309e-12, 15.607e-12), abs=5e-16)
-    assert (one.d31, one.d33) == pytest.approx((-123.82e-12, 291.30e-12), abs=5e-15)
-    assert (one.k33, one.k31) == pytest.approx((0.69337, 0.33186), abs=5e-6)
-    assert (resonances(LONG)[0], antiresonances(LONG)[0]) == pytest.approx((76534.907, 101406.271), abs=5e-4)
-    assert coupling(LONG) == pytest.approx(0.656029, abs=5e-7)
-    assert (resonances(ACROSS)[0], antiresonances(ACROSS)[0]) == pytest.approx((82279.702, 86211.110), abs=5e-4)
-    assert branch(ACROSS) == pytest.approx((121.141e-12, 30.88613e-3), rel=5e-6)
-    assert (resonances(HALF_WAVE)[0], antiresonances(HALF_WAVE)[0]) == pytest.approx((24870.3118, 26277.1686), abs=5e-5)
 
 
 def test_impedance_and_circuit_of_free_bars():
@@ -210,28 +195,3 @@ def test_modes_that_the_voltage_does_not_excite_are_left_out():
         resonances(replace(LONG, material=replace(PZT4, e31=0.0, e33=0.0)))
     with pytest.raises(InputError, match="count = 0"):
         resonances(LONG, 0)
-
-
-def test_quantities_of_a_scene():
-    beam = {"length": 0.5, "width": 0.02, "thickness": 0.001, "youngs_modulus": 70e9, "density": 2700.0}
-
-    def value(name, actuator, **arguments):
-        scene = scene_from({"name": "a", "beam": beam, "drive": {"frequency_hz": 4276.0, "actuator": actuator}})
-        return evaluate(f"actuator.{name}", arguments, scene, SolutionCache(scene.beam))
-
-    mass = {"length": 0.045, "youngs_modulus": 71e9, "density": 2800.0}
-    table = {"kind": "langevin", "rings": 2, "ring_thickness": 0.005, "area": HALF_WAVE.area, "front": mass}
-    assert value("resonance", table) == resonances(HALF_WAVE)[0]
-    assert value("antiresonance", table, n=2) == antiresonances(HALF_WAVE, 2)[1]
-    lossy = replace(HALF_WAVE, mechanical_loss=0.002, dielectric_loss=0.004)
-    table |= {"mechanical_loss": 0.002, "dielectric_loss": 0.004}
-    assert value("impedance", table, frequency_hz=24e3) == impedance(lossy, 24e3)
-    bar = {"kind": "bar-31", "length": 0.02, "width": 0.003, "thickness": 0.0005}
-    assert value("branch", bar, element="inductance") == branch(ACROSS).inductance
-    assert value("coupling", {"kind": "bar-33", "length": 0.02, "area": 9e-6}) == coupling(LONG)
-    unstable = {**asdict(PZT4), "c33": 1.0}
-    wrong = {"kind": "bar-13", "area": 1e-6, "base": -1.0, "material": unstable}
-    sentences = ("did you mean", "actuator.area is not a known key", "above 0", "definite")
-    for (key, word), sentence in zip(wrong.items(), sentences, strict=True):
-        with pytest.raises(InputError, match=sentence):
-            value("coupling", {**bar, key: word})

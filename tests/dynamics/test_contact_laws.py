@@ -90,23 +90,6 @@ def test_a_mass_that_sticks_has_the_forces_of_one_fixed_to_the_beam(law, kinemat
         assert motion.energy.friction_loss >= -1e-15
 
 
-@pytest.mark.parametrize("kinematics", ["tangential", "following"])
-@pytest.mark.parametrize("normal", ["massless", "bilateral"])
-def test_a_prescribed_speed_and_a_fixed_position_stay_as_they_are(normal, kinematics):
-    """A fixed position has one reaction at any speed, but for friction, of which there is none here."""
-    slider = Slider(mass=4e-3, mu=1e-9, preload=0.8, position=0.19, normal=normal, kinematics=kinematics)
-    asked = {"model": "fem", "count": 20, "keep": Keep(samples=7), "step": 2e-6}
-    drive = Excitation(FORCES, HERTZ, soft_start_periods=1.0)
-    moving = simulate(STRIP, drive, 1e-3, slider=PrescribedSlider(slider, 0.013), **asked)
-    assert moving.speed == pytest.approx(np.full(7, 0.013), rel=1e-12)
-    still, fast = (
-        simulate(STRIP, drive, 1e-3, slider=PrescribedSlider(slider, v, fixed_position=True), **asked)
-        for v in (0.0, 3.0)
-    )
-    assert not np.any([still.travelled, fast.travelled])
-    assert fast.normal_force == pytest.approx(still.normal_force, abs=1e-7)
-
-
 FEET = {
     "point": {"contact": Contact(stiffness=3e5, damping=6.0)},
     "gives way": {"contact": Contact(stiffness=3e5, damping=6.0, tangential_stiffness=1.3e5)},

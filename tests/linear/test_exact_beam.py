@@ -5,7 +5,6 @@ import pytest
 from msgspec.structs import replace
 
 from tests.beams import PAIRED, PAIRS, STRIP, cut
-from tests.reference.dense import phasor
 from verify import Beam, Device, ExactModel, PointForce, PointMass, PointSpring, Section
 from verify.errors import InputError, ResonanceError
 
@@ -17,12 +16,6 @@ BAR = Beam(
     spring=(PointSpring(position=0.11, stiffness=2e6, rotational=700.0),), foundation=3.1e6,
 )  # fmt: skip
 PLAIN = replace(BAR, section=(), mass=(), spring=(), foundation=0.0)
-LOSSY = replace(BAR, loss_factor=0.013)
-FORCES = (
-    PointForce(position=0.07, amplitude=2.0, phase_deg=30.0),
-    PointForce(position=0.29, amplitude=1.3),
-    PointForce(position=0.61, amplitude=0.4, phase_deg=-110.0),
-)
 ZERO = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives that vanish at an end."""
 
@@ -147,20 +140,6 @@ def test_a_slowly_driven_free_beam_moves_as_a_rigid_body():
     found = ExactModel(beam).harmonic([PointForce(position=0.17, amplitude=3.0)], 1e-4).deflection(x)
     expected = -3.0 / omega**2 * (1 / masses.sum() + (x - centre) * (0.17 - centre) / inertia)
     assert found == pytest.approx(expected, rel=1e-11)
-
-
-def test_the_power_of_forces_is_the_loss_in_bending_alone():
-    """Re(F v*) / 2 is eta omega / 2 times the integral of EI w''^2: springs, foundation and tension lose nothing."""
-    beam = replace(LOSSY, tension=2e5)
-    field = ExactModel(beam).harmonic(FORCES, 730.0)
-    power = sum((np.conj(phasor(f)) * 1j * field.omega * field.deflection(f.position)[0]).real / 2 for f in FORCES)
-    loaded = replace(
-        beam, mass=(*beam.mass, PointMass(position=0.07, mass=1.0))
-    )  # for a stretch that ends at the force
-    x, weights, *_ = gauss(loaded, 3)
-    stiffness = np.concatenate([np.full(42, piece.bending_stiffness) for piece, _, _ in cut(loaded)])
-    loss = beam.loss_factor * field.omega / 2 * (stiffness * weights) @ abs(field.shapes(x, 2)) ** 2
-    assert power == pytest.approx(loss, rel=1e-10)
 
 
 def test_a_dashpot_at_a_node_leaves_a_resonance_undamped():

@@ -294,16 +294,3 @@ def test_forces_give_what_bending_and_shear_lose_and_waves_carry(model, within, 
     one = ExactModel(beam, theory="timoshenko") if model == "analytic" else HermiteModel(beam, 450, theory="timoshenko")
     field = one.harmonic(forces, 47000.0)
     assert abs(measure(field, middle_half(beam), field.wavenumber).power_imbalance) < within
-
-
-@pytest.mark.parametrize("x", [0.001, 0.03, 0.1, 0.195])
-def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
-    forces = (PointForce(position=0.02), PointForce(position=0.17, phase_deg=90.0))
-    lifts, turns = np.array([transfer.state(BAR, "timoshenko", 30000.0, one.position, x)[:2] for one in forces]).T
-    up, across = lifts @ [1.0, 1j], -0.009 * (turns @ [1.0, 1j])
-    area = 2.0 * (np.conj(across) * up).imag / (abs(across) ** 2 + abs(up) ** 2)
-    exact = np.tan(0.5 * np.arcsin(area))
-    for model, within in (("exact", 1e-10), ("fem", 1e-3)):
-        field = solve(model, BAR, forces, 30000.0)
-        found = ellipse(surface_motion(BAR, field.rotation(x), x), field.deflection(x))[0]
-        assert found == pytest.approx([exact], rel=within)
