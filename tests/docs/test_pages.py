@@ -6,6 +6,7 @@ import socket
 import warnings
 from html import escape, unescape
 from pathlib import Path
+from shutil import copy, copytree, ignore_patterns
 from urllib.parse import unquote
 
 import numpy as np
@@ -30,13 +31,15 @@ def built(tmp_path_factory):
     def refuse(*_):
         raise OSError("the build used the network")
 
-    target = tmp_path_factory.mktemp("pages")
-    log = target / "warnings.txt"
+    target, source = tmp_path_factory.mktemp("pages"), tmp_path_factory.mktemp("source")
+    for folder in (DOCS, DOCS.parent / "examples"):  # the build writes pages beside them, and another worker may build
+        copytree(folder, source / folder.name, ignore=ignore_patterns("made", "gallery", "_build"))
+    copy(DOCS.parent / "CONTRIBUTING.md", source)
+    log, docs = target / "warnings.txt", str(source / "docs")
     with pytest.MonkeyPatch.context() as patch, log.open("w") as stream, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of Sphinx's own Python
         patch.setattr(socket.socket, "connect", refuse)
-        folders = (str(DOCS), str(DOCS), str(target), str(target / ".trees"))
-        Sphinx(*folders, "html", status=None, warning=stream).build()
+        Sphinx(docs, docs, str(target), str(target / ".trees"), "html", status=None, warning=stream).build()
     return target, log.read_text("utf-8")
 
 
