@@ -7,12 +7,14 @@ the other records are of the recording scripts of the sheets.
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import mujoco
 import numpy as np
 
+from verify.sheets.write import write
+
 HERE = Path(__file__).parent
-SHEETS = HERE.parents[1] / "verify" / "sheets" / "data"
 LENGTH, WIDTH, THICKNESS, YOUNG, DENSITY = 0.3, 0.025, 0.003, 206e9, 7850.0
 STIFFNESS, LINE = YOUNG * WIDTH * THICKNESS**3 / 12.0, DENSITY * WIDTH * THICKNESS  # N m^2, kg/m
 COUNT, FORCE, ZETA = 12, 0.12, 0.002  # -, N, of mode 1
@@ -60,7 +62,9 @@ def ring(text, lagged=False):
 def recorded(sheet, *options):
     """Table and header of the recording script of a sheet."""
     out = HERE / "run.csv"
-    subprocess.run([sys.executable, SHEETS / sheet / "mujoco_record.py", "--out", out, *options], check=True)
+    with TemporaryDirectory() as folder:
+        write(sheet, Path(folder), "mujoco")
+        subprocess.run([sys.executable, "mujoco_record.py", "--out", out, *options], cwd=folder, check=True)
     header, table = out.read_text().partition("\n")[0], np.loadtxt(out, delimiter=",", skiprows=1)
     out.unlink()
     return table, header

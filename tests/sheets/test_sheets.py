@@ -436,11 +436,12 @@ def test_powers_of_parameters_are_those_of_an_independent_derivation(name):
             assert figure.powers.get(parameter, 0.0) == pytest.approx(power, abs=3e-3), (figure.name, parameter)
 
 
-STICKING = ["--cone", "elliptic", "--noslip", "10", "--solref", "0.004"]
+STICKING = ["--cone", "elliptic", "--noslip", "20", "--solref", "0.004"]
 SETTINGS = {
     ("ramp-stick", "mujoco"): STICKING[:4],
     ("ramp-slip", "mujoco"): STICKING[:2],
     ("belt", "mujoco"): STICKING,
+    ("belt-stick-slip", "mujoco"): [*STICKING, "--step", "0.0005"],
     ("decay", "mujoco"): STICKING,
     ("swinging-chain", "mujoco"): ["--integrator", "RK4"],
 }

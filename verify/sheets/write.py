@@ -10,11 +10,18 @@ from verify.sheets.sheet import DATA, load, names
 
 MODELS = {"mujoco": "model.xml", "exudyn": "model_exudyn.py", "sdf": "model.sdf"}
 """Engines and the file of a chain for each."""
+BLOCKS = ("belt", "belt-stick-slip", "decay", "ramp-slip", "ramp-stick")
+"""Cases that share the scripts of the folder `block`."""
+
+
+def _script(name: str, engine: str) -> Path:
+    """The recording script of a case that no other kind of case has."""
+    return DATA / ("block" if name in BLOCKS else name) / f"{engine}_record.py"
 
 
 def engines(name: str) -> tuple[str, ...]:
     """Engines for which a case has a model or a script that builds it; for others its sheet says what to build."""
-    own = tuple(engine for engine in MODELS if (DATA / name / f"{engine}_record.py").exists())
+    own = tuple(engine for engine in MODELS if _script(name, engine).exists())
     if not load(name).chain:
         return own
     return (*own, "sdf") if own else tuple(MODELS)
@@ -35,10 +42,9 @@ def write(name: str, folder: Path, engine: str = "", count: int | None = None) -
         listed = ", ".join(engines(name)) or "none"
         raise InputError(f"engine = {engine!r}: case {name!r} has files for {listed}; build what its sheet says")
     texts = {"sheet.toml": read_text(DATA / name / "sheet.toml", "sheet")}
-    script = f"{engine}_record.py"
-    for home in (DATA / name, DATA):
-        if engine and script not in texts and (home / script).exists():
-            texts[script] = read_text(home / script, "script")
+    for script in (_script(name, engine), DATA / f"{engine}_record.py"):
+        if engine and script.name not in texts and script.exists():
+            texts[script.name] = read_text(script, "script")
     writable_folder(folder, "to")
     for file, text in texts.items():
         write_whole(folder / file, text, "to")
