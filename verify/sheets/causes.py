@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from math import log, nan, pi
+from math import log, pi
 from statistics import median
+from typing import NamedTuple
 
 import numpy as np
 
+from verify.analysis.verdict import per_cent
 from verify.arrays import Array
 from verify.compare.candidates import EULER, Candidate, candidates, frequencies_hz
 from verify.errors import InputError
@@ -31,11 +33,11 @@ NEAR, SHARE = 3e-3, 0.25
 MANY = range(4, 61)
 UNIFORM, RIGHT_SHARE = 0.03, 0.01
 """Largest difference of ratios of friction to that of the sheet which are one ratio; of one from 1."""
-CLOSE = 0.05
-"""Difference of two explanations, over the errors, up to which the figures do not separate them."""
-FARTHEST, MOST, SURER = 1.7, 3, 0.3
-"""Largest logarithm of a figure over its exact value that powers explain; most explanations that are listed; difference
-of a chain with any number of links, over that of a parameter, below which it is the cause."""
+LOCAL, MOST_LEFT, LISTED, BETTER = 0.1, 0.5, 0.01, 0.3
+"""Of a change, by which powers, which are of small changes, may err; largest part of the errors that an explanation
+leaves, least that is listed; rms difference of a chain of any number of links, over a parameter's, that is listed."""
+FARTHEST = 1.7
+"""Largest logarithm of a figure over its exact value that powers explain."""
 ABSENT = 1e-9
 """Of a figure over its exact value, without the parameter that it is proportional to."""
 MODULUS, GRAVITY = "youngs_modulus_Pa", "gravity_m_per_s2"
@@ -51,11 +53,33 @@ GOOD = {"gregory": "take more links", "half": "take more links, or Gregory's wei
 BODIES = "give every link its mass m l at its centre, and the inertia m l^3/12 about it"
 
 
-def causes(sheet: Sheet, run: Run, figures: Sequence[Figure], values: Mapping[str, float]) -> dict[str, str]:
-    """Causes of the errors of a run, with remedies, by name of the figure; without those that are not known.
+class Explanation(NamedTuple):
+    """A mistake that would explain figures: a clause and what to do."""
 
-    `values`: of the figures that the record has. A mistake in the record comes first, then its noise, values that
-    mistakes give, and last what explains all figures together.
+    text: str
+    remedy: str
+    figures: frozenset[str]
+    among: frozenset[str]
+    """Figures that it explains, and those that it has to explain."""
+    left: float
+    """Of their errors, what it does not explain."""
+    kind: str = "figures"
+    """What it has to explain."""
+
+    @property
+    def scope(self) -> str:
+        """'all 4 figures', '3 of 4 figures', 'the one figure that fails'."""
+        n, of = len(self.figures), len(self.among)
+        if of == 1:
+            return "the one " + self.kind.replace("figures", "figure").replace("fail", "fails")
+        return f"{f'{n} of {of}' if n < of else 'both' if n == 2 else f'all {n}'} {self.kind}"
+
+
+def causes(sheet: Sheet, run: Run, figures: Sequence[Figure], values: Mapping[str, float]) -> dict[str, str]:
+    """Likely causes of the errors of a run, with remedies, by name of the figure; without those that are not known.
+
+    `values`: of the figures that the record has. A mistake in the record comes first, then its noise, then all
+    mistakes that would explain the figures, those of most figures first.
     """
     off = [one for one in figures if one.name in values and one.fails(values[one.name])]
     if not off:
@@ -68,31 +92,70 @@ def causes(sheet: Sheet, run: Run, figures: Sequence[Figure], values: Mapping[st
 
     if text := fault(run, passes, any(one.exact for one in off)):
         return dict.fromkeys((one.name for one in figures), text)
-    rubs = friction(sheet, values, off)
-    found = {one.name: noise(run, one, values[one.name]) or rubs or of_value(sheet, one, values) for one in off}
-    common = elastic(sheet, figures, values, off, run.count)
+    rigid = [one for one in figures if one.name in values and (one.powers or one.frictionless is not None)]
+    among = frozenset(one.name for one in (*rigid, *off) if one.read != "damping")
+    rubs = friction(sheet, values, off, among)
+    alone, changes = elastic(sheet, rigid, values, off, run.count, among)
+    known, found = known_values(values, off), dict[str, str]()
     for one in off:
-        if not found[one.name] and one.read == "first" and one.exact and not common:
-            factor = values[one.name] / one.exact
+        value, told = values[one.name], [each for each in known if one.name in each.figures]
+        listed = told if one.read == "damping" else [*told, *rubs, *changes]
+        if one.read == "first" and not any(one.name in each.figures for each in listed):
+            listed = []
+        text = noise(run, one, value) or ("" if told or rubs else unsettled(run, one, value))
+        if not text and not listed and one.read == "damping":
+            rings = [x.error(values[x.name]) for x in sheet.figure if x.read == "frequency" and x.name in values]
+            follows = abs(one.error(value)) < FOLLOWS * max(map(abs, rings), default=0.0)
+            text = "" if follows else numerical_damping(sheet, values)
+        elif not (text or listed or (alone and MODULUS in one.powers)) and one.read == "first" and one.exact:
+            factor = value / one.exact
             units = "" if 0.2 < factor < 5.0 and len(values) == len(figures) else UNITS
             text = f"the motion starts at {factor:.4g} times that of the sheet: {units}"
-            found[one.name] = f"{text}let it start at {one.exact:.4g} {one.unit}"
-        elif not found[one.name] and one.read != "damping":
-            found[one.name] = unsettled(run, one, values[one.name]) or common
+            text = f"{text}let it start at {one.exact:.4g} {one.unit}"
+        found[one.name] = text or sentence(listed) or ("" if rubs or one.read == "damping" else alone)
     return {name: text for name, text in found.items() if text}
 
 
-def of_value(sheet: Sheet, figure: Figure, values: Mapping[str, float]) -> str:
-    """The cause that the value of a figure tells by itself."""
-    value = values[figure.name]
-    for one in figure.cause:
-        if abs(value - one.value) <= one.within * abs(one.value):
-            return one.because
-    if figure.read != "damping":
+def sentence(listed: Sequence[Explanation]) -> str:
+    """Explanations as conditions, those of most figures first: 'perhaps A, or B, each of which would explain ...'."""
+    if not listed:
         return ""
-    rings = [one.error(values[one.name]) for one in sheet.figure if one.read == "frequency" and one.name in values]
-    follows = abs(figure.error(value)) < FOLLOWS * max(map(abs, rings), default=0.0)
-    return "" if follows else numerical_damping(sheet, values)
+    groups = dict[str, list[Explanation]]()
+    for one in sorted(listed, key=lambda one: (-len(one.figures) / len(one.among), one.left)):
+        groups.setdefault(one.scope, []).append(one)
+    parts = list[str]()
+    for scope, group in groups.items():
+        texts = [
+            f"{one.text} (leaves {per_cent(one.left)})" if LISTED < one.left < MOST_LEFT else one.text for one in group
+        ]
+        parts.append(f"{', or '.join(texts)}, {'each of ' * (len(group) > 1)}which would explain {scope}")
+    alone = ", and one figure cannot tell a cause from others" * (set(groups) == {"the one figure"})
+    remedies = ", else ".join(dict.fromkeys(one.remedy for group in groups.values() for one in group))
+    return f"perhaps {', or '.join(parts)}{alone}: {remedies}"
+
+
+def known_values(values: Mapping[str, float], off: Sequence[Figure]) -> list[Explanation]:
+    """The mistakes that are known to give the values of figures."""
+    found = dict[str, list[tuple[str, float]]]()
+    for figure in off:
+        value = values[figure.name]
+        for one in figure.cause:
+            if abs(value - one.value) <= one.within * abs(one.value):
+                left = abs((value - one.value) / (value - figure.exact))
+                found.setdefault(one.because, []).append((figure.name, left))
+                break
+    among = frozenset(one.name for one in off if one.read != "damping" or one.cause)
+    return [
+        Explanation(
+            text,
+            remedy,
+            frozenset(name for name, _ in named),
+            among,
+            max(left for _, left in named),
+            kind="figures that fail",
+        )
+        for (text, _, remedy), named in ((because.partition(": "), named) for because, named in found.items())
+    ]
 
 
 def unsettled(run: Run, figure: Figure, value: float) -> str:
@@ -104,61 +167,100 @@ def unsettled(run: Run, figure: Figure, value: float) -> str:
     return f"{text}: damp it more, and check units (E in Pa, lengths in m) and the time step"
 
 
-def friction(sheet: Sheet, values: Mapping[str, float], off: Sequence[Figure]) -> str:
+def friction(
+    sheet: Sheet, values: Mapping[str, float], off: Sequence[Figure], among: frozenset[str]
+) -> list[Explanation]:
     """The friction coefficient that the figures which are functions of it have in common."""
     shares = dict[str, float]()
     for one in sheet.figure:
-        if one.frictionless is not None and (one.friction == "linear" or values.get(one.name, 0.0) > 0.0):
-            value = values.get(one.name, nan)
+        value = values.get(one.name)
+        if one.frictionless is not None and value is not None and (one.friction == "linear" or value > 0.0):
             none, exact, found = (LAWS[one.friction](x) for x in (one.frictionless, one.exact, value))
             shares[one.name] = float((found - none) / (exact - none))
     others = any(one.powers and one.frictionless is None for one in off)  # that no friction changes
     if others or not any(one.name in shares for one in off) or max(shares.values()) - min(shares.values()) > UNIFORM:
-        return ""
+        return []
     share, mu = median(shares.values()), sheet.parameters["friction_coefficient"]
     if abs(share - 1.0) < RIGHT_SHARE:
-        return ""
+        return []
+    text, remedy = f"mu is {share * mu:.3g}, {share:.3g} times the sheet's", f"give {mu:g}, else check the weight"
     if abs(share) < UNIFORM:
-        return "there is no friction: check that the bodies touch, gravity, and the mu of their pair"
-    if abs(share / mu - 1.0) < UNIFORM:
-        return "friction is mu^2 N: the engine multiplies the coefficients of the two bodies; give their square roots"
-    return (
-        f"friction is that of mu = {share * mu:.3g}, {share:.3g} times the sheet's: give {mu:g}, else check the weight"
-    )
+        text, remedy = "there is no friction", "check that the bodies touch, gravity, and the mu of their pair"
+    elif abs(share / mu - 1.0) < UNIFORM:
+        text = "friction is mu^2 N, as of an engine that multiplies the coefficients of the two bodies"
+        remedy = "give their square roots"
+    spread = max(abs(one - share) for one in shares.values())
+    passing = among - {one.name for one in off}
+    return [Explanation(text, remedy, passing | frozenset(shares), among, spread / abs(share - 1.0))]
 
 
 def elastic(
-    sheet: Sheet, figures: Sequence[Figure], values: Mapping[str, float], off: Sequence[Figure], count: int | None
-) -> str:
-    """The parameter, clamp or discretisation that explains the figures, by the least rms difference."""
-    known = [one for one in figures if one.powers and one.name in values]
+    sheet: Sheet,
+    rigid: Sequence[Figure],
+    values: Mapping[str, float],
+    off: Sequence[Figure],
+    count: int | None,
+    among: frozenset[str],
+) -> tuple[str, list[Explanation]]:
+    """What to say where nothing explains a figure, and the parameters, clamp or chains that would explain figures.
+
+    A parameter explains the figures where its change brings all within what passes and leaves less than half of the
+    errors; the change is that of least squares, weighted by what passes.
+    """
+    known = [one for one in rigid if one.powers]
     if not any(one in off for one in known):
-        return ""
+        return "", []
     if any(abs(values[one.name]) < ABSENT * abs(one.exact) and GRAVITY in one.powers for one in known):
-        return f"there is no gravity: give {sheet.parameters[GRAVITY]:g} m/s^2, in the direction of the sheet"
+        text = f"it is 0, as without gravity or with rigid joints: give {sheet.parameters[GRAVITY]:g} m/s^2"
+        return f"{text}, in the direction of the sheet", []
     errors = np.array([one.logarithm(values[one.name]) for one in known])
-    if abs(errors).max() > FARTHEST:  # powers are of small changes
-        started = any(one.read == "first" for one in off)
-        return (
-            ""
-            if started or MODULUS not in known[0].powers
-            else f"the run is far from that of the sheet: {UNITS}the step"
-        )
-    weights, rings = 1.0 / np.array([one.within for one in known]), np.array([one.read == "frequency" for one in known])
-    size, fits = float(np.linalg.norm(weights * errors)), list[tuple[float, float, str, float]]()
+    if abs(errors).max() > FARTHEST:
+        far = MODULUS in known[0].powers and not any(one.read == "first" for one in off)
+        return f"the run is far from that of the sheet: {UNITS}the step" * far, []
+    rings = np.array([one.read == "frequency" for one in known])
+    fits, passing = fitted(known, errors), among - {one.name for one in off}
+    named = passing | {one.name for one in known}
+    texts = {one.parameter: _change(sheet, one.parameter, one.change, count) for one in fits}
+    found = [
+        Explanation(texts[one.parameter], "give the sheet's", named, among, one.left) for one in fits if one.explains
+    ]
+    ringing = frozenset(one.name for one in known if one.read == "frequency")
+    chain = discretisation(sheet, values, count) if any(one.name in ringing for one in off) else None
+    if chain and (not found or chain[0] < BETTER * rms(fits[0].rest[rings])):
+        found.append(Explanation(*chain[1:], ringing, ringing, chain[0] / rms(errors[rings]), "frequencies"))
+    first = "the step and every joint"
+    if any(one.read == "first" and MODULUS not in one.powers for one in off):
+        first = "the start"
+    elif fits[0].left < MOST_LEFT:
+        first = f"whether {texts[fits[0].parameter]}, which leaves {per_cent(fits[0].left)} of them"
+    listed = ", ".join(f"{one.name} {one.error(values[one.name]):+.2g}" for one in off if one.name in among)
+    text = f"no single parameter of the sheet would explain the errors ({listed}): check first {first}"
+    return "" if found else text, found
+
+
+class Fit(NamedTuple):
+    """The change of a parameter that leaves least of the errors of figures."""
+
+    left: float
+    parameter: str
+    change: float
+    rest: Array
+    explains: bool
+    """Whether every figure passes with it."""
+
+
+def fitted(known: Sequence[Figure], errors: Array) -> list[Fit]:
+    """Every parameter by least squares of errors over what passes, the one that leaves least first."""
+    within, found = np.array([one.within for one in known]), list[Fit]()
     for parameter in dict.fromkeys(parameter for one in known for parameter in one.powers):
         powers = np.array([one.powers.get(parameter, 0.0) for one in known])
-        change = float((weights**2 * powers) @ errors / ((weights * powers) ** 2).sum())
+        change = float((powers / within**2) @ errors / ((powers / within) ** 2).sum())
         rest = errors - change * powers
-        fits.append((float(np.linalg.norm(weights * rest)) / size, rms(rest[rings]), parameter, change))
-    least, difference, _, _ = min(fits)
-    rang = any(one in off for one in known if one.read == "frequency")
-    chains = discretisation(sheet, values, count) if rang else None
-    if chains and (least > SHARE or chains[0] < SURER * difference):
-        return chains[1]
-    soft = [(name, by) for fit, _, name, by in fits if fit < least + CLOSE and (name != CLAMP or by > 0.0)]
-    alike = [_change(sheet, name, by, count) for name, by in soft][:MOST]
-    return f"{', or '.join(alike)}: give the sheet's" if least < SHARE else ""
+        left = float(np.linalg.norm(rest / within) / np.linalg.norm(errors / within))
+        within_reach = (abs(rest) <= within + LOCAL * abs(change * powers)).all()
+        if parameter != CLAMP or change > 0.0:
+            found.append(Fit(left, parameter, change, rest, left < MOST_LEFT and bool(within_reach)))
+    return sorted(found, key=lambda one: one.left)
 
 
 def _change(sheet: Sheet, name: str, change: float, count: int | None) -> str:
@@ -170,9 +272,7 @@ def _change(sheet: Sheet, name: str, change: float, count: int | None) -> str:
     if (links := count or (sheet.chain.count if sheet.chain else 0)) == 0:
         return text
     gregory, half = (weight / (weight + links * change) for weight in (3.0 / 8.0, 1.0 / 2.0))
-    return (
-        f"{text}, as where the first of {links} joints has {half:.2g} of 2EI/l or {gregory:.2g} of Gregory's stiffness"
-    )
+    return f"{text} (the first of {links} joints at {half:.2g} of 2EI/l or {gregory:.2g} of Gregory's stiffness)"
 
 
 def rms(values: Array) -> float:
@@ -211,8 +311,8 @@ def numerical_damping(sheet: Sheet, values: Mapping[str, float]) -> str:
     return "the integrator or a dashpot damps more than the sheet says: halve the step to tell which"
 
 
-def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None) -> tuple[float, str] | None:
-    """(rms difference of logarithms, cause) of the chain of `compare`, of `count` links or any number, that is nearest.
+def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None) -> tuple[float, str, str] | None:
+    """(rms difference of logarithms, cause, remedy) of the nearest chain of `compare`, of `count` links or any number.
 
     None where the frequencies of the run are its no more than by chance.
     """
@@ -230,7 +330,7 @@ def discretisation(sheet: Sheet, values: Mapping[str, float], count: int | None)
     if candidate.mass == "links" and candidate.wall in GOOD:
         remedy = GOOD[candidate.wall]
     fitted = "" if count else ", N fitted"
-    return found[0][0], f"these are the frequencies of {chains}{fitted}: {remedy}"
+    return found[0][0], f"these are the frequencies of {chains}{fitted}", remedy
 
 
 def _nearest(beam: Beam, logs: Array, modes: list[int], counts: Sequence[int]) -> list[tuple[float, int, Candidate]]:
