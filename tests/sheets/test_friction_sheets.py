@@ -11,16 +11,18 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 DATA = Path(__file__).parents[2] / "verify" / "sheets" / "data"
-G = 9.81
 
 
 def ramp(p):
-    pull, friction = G * sin(radians(p.angle_deg)), p.friction_coefficient * G * cos(radians(p.angle_deg))
+    pull, friction = (
+        p.gravity_m_per_s2 * sin(radians(p.angle_deg)),
+        p.friction_coefficient * p.gravity_m_per_s2 * cos(radians(p.angle_deg)),
+    )
     return 0.5 * p.speed_m_per_s**2 / (pull + friction), friction - pull, 0.0
 
 
 def decay(p):
-    stretch = p.friction_coefficient * p.mass_kg * G / p.stiffness_n_per_m
+    stretch = p.friction_coefficient * p.mass_kg * p.gravity_m_per_s2 / p.stiffness_n_per_m
     turns = [(-1) ** n * (p.start_m - 2 * n * stretch) for n in range(6)]
     assert abs(turns[5]) < stretch < abs(turns[4])  # it sticks at the fifth turn
     return turns[1], turns[2], turns[4], turns[5]
@@ -28,14 +30,14 @@ def decay(p):
 
 def belt(p):
     rate = sqrt(p.stiffness_n_per_m / p.mass_kg)
-    stretch = p.friction_coefficient * p.mass_kg * G / p.stiffness_n_per_m
+    stretch = p.friction_coefficient * p.mass_kg * p.gravity_m_per_s2 / p.stiffness_n_per_m
     return stretch, p.belt_speed_m_per_s / rate, rate / (2 * pi), 0.0
 
 
 def stick_slip(p):
     rate, speed = sqrt(p.stiffness_n_per_m / p.mass_kg), p.belt_speed_m_per_s
     static, kinetic = (
-        mu * p.mass_kg * G / p.stiffness_n_per_m
+        mu * p.mass_kg * p.gravity_m_per_s2 / p.stiffness_n_per_m
         for mu in (p.static_friction_coefficient, p.kinetic_friction_coefficient)
     )
     lead = static - kinetic
@@ -76,7 +78,9 @@ def slider(p):
     def pressure(z):
         return p.layer_stiffness_n_per_m2 * np.maximum(p.amplitude_m * cosine - z, 0.0)
 
-    height = brentq(lambda z: p.wavelength_m * pressure(z).mean() - p.mass_kg * G, -p.amplitude_m, p.amplitude_m)
+    height = brentq(
+        lambda z: p.wavelength_m * pressure(z).mean() - p.mass_kg * p.gravity_m_per_s2, -p.amplitude_m, p.amplitude_m
+    )
     crest = p.lever_m * k * omega * p.amplitude_m
     return -brentq(lambda v: pressure(height) @ np.sign(crest * cosine - v), 0.0, crest), height
 
@@ -92,7 +96,7 @@ SHEETS = {
     "slider-on-wave": slider,
     "swinging-chain": lambda p: (0.5 * p.mass_kg * p.gravity_m_per_s2 * p.length_m * p.rods**2, 0.0),
     "damped-sag": lambda p: (
-        2 * (1.5 * p.density_kg_per_m3 * G * p.length_m**4 / (p.youngs_modulus_Pa * p.thickness_m**2),)
+        2 * (1.5 * p.density_kg_per_m3 * p.gravity_m_per_s2 * p.length_m**4 / (p.youngs_modulus_Pa * p.thickness_m**2),)
     ),
 }
 
@@ -110,7 +114,8 @@ def test_a_sheet_of_friction_has_the_exact_values_of_its_parameters(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["belt", "belt-stick-slip", "decay", "restitution", "slider-on-wave", "swinging-chain"]
+    "name",
+    ["belt", "belt-stick-slip", "capstan", "decay", "ramp-slip", "restitution", "slider-on-wave", "swinging-chain"],
 )
 def test_powers_of_parameters_are_those_of_the_closed_forms(name):
     sheet = tomllib.loads((DATA / name / "sheet.toml").read_text())
