@@ -113,8 +113,9 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
         steps, tips = np.diff(places, axis=0), (centres - places)[-2:]
         ways = np.vstack([steps, tips[-1:] if tips[-1].any() else steps[-1:]])
         ways, steps = ways / np.linalg.norm(ways, axis=1)[:, None], np.linalg.norm(steps, axis=1)
-        # the centre of mass of a piece of a curve is off its chord, of the last one as of the one before
-        ways[-1] += np.cross(np.cross(tips[0], ways[-2]) / (np.linalg.norm(tips[0]) or 1.0), ways[-1])
+        # the centre of mass of a piece of a curve is off its chord by an angle in proportion to length and curvature
+        size = np.linalg.norm(tips, axis=1)
+        ways[-1] += np.cross(np.cross(tips[0], ways[-2]) * size[1] / (size[0] ** 2 or 1.0), ways[-1])
         ways[-1] /= np.linalg.norm(ways[-1])
     centre = np.einsum("ni,ni->n", centres - places, ways)
     if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
@@ -123,7 +124,8 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
     share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
     last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
     heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
-    if heavy > 0.01 or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
+    longer = (1.0 - ways[-1] @ ways[-2]) / 12.0  # an arc than its chord
+    if heavy > 0.01 + longer or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
         last = float(steps[-1])  # a body of the end moves the centre of mass
     return places, ways, np.append(steps, last), curved
 
