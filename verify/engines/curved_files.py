@@ -19,7 +19,7 @@ from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.rod import VALUES, Rod, spline
 from verify.engines.rules import ADAPTED, SERIES, WEIGHTS, Judged, at_wall, half_links, written
-from verify.engines.stiffness_law import ALIKE, MANY, Law, law_of
+from verify.engines.stiffness_law import ALIKE, MANY, Law, fitted_law
 from verify.errors import InputError, shown
 from verify.formatting import with_unit
 from verify.settings import WALLS, wall_label
@@ -144,7 +144,9 @@ def _densities(lines: list[Line], name: str) -> tuple[Law, list[str]]:
         link = shown(joints[int(heavy.argmax())])
         raise InputError(f"{name}: the link of joint {link} carries a body, on a curve give the links alone")
     try:  # the first three count like the others: there is no wall
-        law = law_of(np.append(density[2::-1], density), [*joints[2::-1], *joints])
+        middles = np.cumsum(lengths) - 0.5 * lengths
+        values, places = (np.append(sign * one[2::-1], one) for sign, one in ((1.0, density), (-1.0, middles)))
+        law = fitted_law(values, places, [*joints[2::-1], *joints])
     except InputError:
         return Law("", density, density, []), []
     ratios = density / law.joints[3:]

@@ -14,7 +14,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
-from verify.engines.stiffness_law import ALIKE, ROUGH, Law, law_of
+from verify.engines.stiffness_law import ALIKE, ROUGH, Law, fitted_law
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
@@ -181,7 +181,7 @@ def at_wall(values: Array, names: list[str], support: str, soft: Array, meant: f
     rule, _, level = _rule(values, [np.ones(n)], support, _weld(soft))
     if rule != IRREGULAR:
         return rule, Law("constant", np.full(n, level), np.full(n, level), [])
-    law = law_of(values, names, meant)
+    law = fitted_law(values, np.append(0.0, np.cumsum(soft[:-1])), names, meant)
     steady = np.where(np.isin(range(n), law.odd), 1.0, values / law.joints)
     alike = 0.5 * ROUGH if law.kind in ("smooth", "nearly constant") else ALIKE
     rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft), alike)
