@@ -28,14 +28,13 @@ UNEVEN = 0.01
 """Relative difference of mass per length from which a link differs."""
 JUMP = 3.0
 """Difference between two links, over that of their neighbours, from which it is a step."""
-TILT, SHARE, JUMPED = 5e-3, 0.1, 0.25
-"""Angle of hinges off the axes of a joint, rad, and over the rest angle and its change from joint to joint, from which
-they are named: an error of its square and EI/GJ. Axes by the joints alone are uncertain by a part of the rest angle, at
-a jump of the curvature by what a spline overshoots; those of one link are off by half the rest angle."""
+TILT, SHARE, JUMPED, DECAY = 5e-3, 0.1, 0.5, 2.0 - 3.0**0.5
+"""Angle of hinges off the axes of a joint, rad, and over the rest angle and its changes, from which they are named: an
+error of its square and EI/GJ. Axes by the joints alone are uncertain by a part of the rest angle, near a jump of the
+curvature by what a cubic spline overshoots, 1/(4 3^(1/2)), which decays from joint to joint; those of one link are off
+by half the rest angle."""
 HEAVY = 1.5
 """Mass per length over that of both neighbours from which a link carries a body."""
-ESTIMATE = 0.02
-"""Relative error of lengths of a sharp curve through few joints, and so of EI and mass per length."""
 INERTIA, CENTRE = 0.1, 0.02
 """Relative difference of an inertia, and distance of a centre of mass over the length, from which a link differs."""
 LOST = 0.01, 0.2
@@ -62,7 +61,8 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     """
     lines, chords = _lengths(lines)
     _check(lines, name)
-    plane, lengths, density, links = len(lines) == 1, lines[0].links[:, 0], *_densities(lines, name)
+    plane, lengths, unsure = len(lines) == 1, lines[0].links[:, 0], _unsure(lines[0])
+    density, links = _densities(lines, unsure, name)
     held, laws, rules = bool(np.isnan(lines[0].springs[0])), list[Law](), list[str]()
     means = [line.springs * half_links(lengths) for line in lines]
     try:
@@ -72,7 +72,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
             near = abs(known / law.joints - 1.0)
             nearer = [j for j in range(len(WEIGHTS.get(rule, ()))) if law.kind == "smooth" and j not in law.odd]
             law.joints[nearer] = known[nearer]  # than by extrapolation
-            odd = [j for j in law.odd if near[j] > ESTIMATE * line.curve.bent]
+            odd = [j for j in law.odd if near[j] > unsure[j]]
             laws, rules = [*laws, law._replace(odd=odd)], [*rules, rule]
     except InputError as error:
         text, whole = str(error), "the beam that they mean as a scene"  # none is curved
@@ -81,6 +81,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         ) from None
     rod, joints = _rod(lines, laws, density, plane)
     meant = curved_chain(rod, np.unique(rod.s)[joints])
+    fitting = [SERIES, ADAPTED, *[wall_label("gregory")] * bool(np.ptp(lengths[:3]) < unsure[0] * lengths[0])]
     judged, correct, off = list[Judged](), list[Array](), dict[str, float]()
     for line, law, rule in zip(lines, laws, rules, strict=True):
         weights = np.append(WEIGHTS.get(rule, ()), np.ones(len(lengths)))
@@ -88,7 +89,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     for line, law, values, rule in zip(lines, laws, means, rules, strict=True):
         wall = "half" if line.turns == "torsion" and not rod.bent else meant.wall
         best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
-        fits, first = rule in (wall_label(wall), SERIES, ADAPTED), np.arange(len(best)) < len(WALLS[wall].weights)
+        fits, first = rule in (*fitting, wall_label(wall)), np.arange(len(best)) < len(WALLS[wall].weights)
         springs = np.where(first & (not (held or off or fits)), best, line.springs)
         wrong = [rule] * (not fits)
         wrong += [law.text(line.joints, values / law.joints)] if law.odd else []
@@ -97,7 +98,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         judged.append(Judged(line, meant, meant, rule, level, springs, wrong, [], [], off, text))
         correct.append(springs)
     present, right = (_chain(lines, each, meant) for each in ([line.springs for line in lines], correct))
-    links += _links_off(lines, meant, plane)
+    links += _links_off(lines, meant, unsure)
     faults = list(dict.fromkeys(text for one in judged for text in one.faults)) + links
     levels = [law.joints[0] for law in laws]
     mixed = not plane and (len(lines) < len(AXES) or np.ptp(levels) > ALIKE * levels[0])
@@ -135,7 +136,7 @@ def _check(lines: list[Line], name: str) -> None:
             raise InputError(f"{name}: joint {joint} {text}, on a curve give it one")
 
 
-def _densities(lines: list[Line], name: str) -> tuple[Law, list[str]]:
+def _densities(lines: list[Line], unsure: Array, name: str) -> tuple[Law, list[str]]:
     """(law of masses per length, without those off it, the latter in words). Raises InputError."""
     (lengths, masses), joints = lines[0].links.T[:2], lines[0].joints
     density = masses / lengths
@@ -150,7 +151,7 @@ def _densities(lines: list[Line], name: str) -> tuple[Law, list[str]]:
     except InputError:
         return Law("", density, density, []), []
     ratios = density / law.joints[3:]
-    odd = [j - 3 for j in law.odd if j > 2 and abs(ratios[j - 3] - 1.0) > ESTIMATE]
+    odd = [j - 3 for j in law.odd if j > 2 and abs(ratios[j - 3] - 1.0) > UNEVEN + unsure[j - 3]]
     right = np.where(np.isin(range(len(density)), odd), law.joints[3:], density)
     return law._replace(joints=right, links=law.links[3:], odd=odd), _named("mass of the link of", joints, ratios, odd)
 
@@ -162,18 +163,19 @@ def _named(what: str, joints: list[str], ratios: Array, odd: Sequence[int]) -> l
     return [f"{what} {', '.join(each[:MANY])}{more}"] if each else []
 
 
-def _links_off(lines: list[Line], meant: CurvedChain, plane: bool) -> list[str]:
+def _links_off(lines: list[Line], meant: CurvedChain, unsure: Array) -> list[str]:
     """Inertias and centres of mass that are not those of pieces of the rod."""
-    (lengths, _, centres, about), curve, joints = lines[0].links.T, lines[0].curve, lines[0].joints
-    found, ways = list[str](), curve.ways
+    (lengths, masses, centres, about), curve, joints = lines[0].links.T, lines[0].curve, lines[0].joints
+    found, ways, plane = list[str](), curve.ways, len(lines) == 1
+    chords = np.linalg.norm(np.diff(curve.places, axis=0), axis=1)
     across, right = (  # those about both directions across the link, without the section's
         np.trace(each, axis1=1, axis2=2) - 2.0 * np.einsum("ni,nij,nj->n", ways, each, ways)
         for each in (curve.bodies[2], meant.bodies[2])
     )
-    ratios = across / right
+    ratios, straight = across / right, masses * chords**2 / (12.0 if plane else 6.0) / right
     if plane:  # of a body of one inertia, or of one with those of both sides
-        ratios = np.where(abs(0.5 * ratios - 1.0) < INERTIA, 1.0, about / right)
-    odd = np.flatnonzero(abs(ratios - 1.0) > INERTIA)
+        ratios = np.where(_outside(0.5 * ratios, 1.0, straight) < INERTIA, 1.0, about / right)
+    odd = np.flatnonzero(_outside(ratios, 1.0, straight) > INERTIA + 2.0 * unsure)
     if len(odd) > len(lengths) // 2:
         inertia = float(np.median(ratios)) / 12.0
         words = "point masses" if inertia < 1e-3 else f"inertia {inertia:.3g} m l^2"
@@ -181,7 +183,7 @@ def _links_off(lines: list[Line], meant: CurvedChain, plane: bool) -> list[str]:
     else:
         found += _named("inertia of the link of", joints, ratios, odd.tolist())
     middle = np.einsum("ni,ni->n", meant.bodies[1] - meant.places[:-1], ways)
-    odd = np.flatnonzero(abs(centres - middle) > CENTRE * lengths)
+    odd = np.flatnonzero(_outside(centres, middle, 0.5 * chords) > (CENTRE + 0.5 * unsure) * lengths)
     if len(odd) > len(lengths) // 2:
         found.append(f"centre of mass at {float(np.median(centres / lengths)):.3g} l in place of l/2")
     else:
@@ -189,13 +191,19 @@ def _links_off(lines: list[Line], meant: CurvedChain, plane: bool) -> list[str]:
     return found
 
 
+def _outside(values: Array, piece: Any, chord: Array) -> Array:
+    """Distance of values from those between a piece of the rod and a uniform straight link."""
+    return np.asarray(abs(values - np.clip(values, np.minimum(piece, chord), np.maximum(piece, chord))))
+
+
 def _tilted(lines: list[Line], meant: CurvedChain) -> list[str]:
     """Hinges off the axes of the rod at their joints, in words."""
     columns: dict[str, int] = {"bending": 1, "width": 2, "torsion": 0}
     rest = np.array([meant.rest_angle(j) for j in range(meant.count)])
-    rest[:1] = rest[1:2]
-    jumps = np.pad(abs(np.diff(rest)), 2)  # beside each joint and one farther
-    unknown = SHARE * rest + JUMPED * np.max([jumps[k : k + len(rest)] for k in range(4)], axis=0)
+    rest[:1], joints = rest[1:2], np.arange(meant.count)
+    joints[:1] = 2  # the first two parts of the spline are one cubic
+    near = DECAY ** abs(joints[:, None] - joints[1:] + 0.5)
+    unknown = SHARE * rest + JUMPED * near @ abs(np.diff(rest))
     named, worst, count = list[str](), 0.0, 0
     for line in lines:
         off = np.linalg.norm(np.cross(line.curve.hinges, meant.axes_at[:, :, columns[line.axis]]), axis=1)
@@ -233,8 +241,7 @@ def lost_angles(lines: list[Line]) -> list[tuple[str, float, str]]:
         lost = alike & (size[1:-1] < LOST[1] * np.linalg.norm(around, axis=1))
         right = turns.copy()
         right[1:-1] += lost[:, None] * (around - turns[1:-1])
-    jumps = np.linalg.norm(np.diff(by, axis=0), axis=1)  # a curve may begin inside a link
-    jumps = np.max([np.append(0.0, jumps[:-1]), jumps, np.append(jumps[1:], 0.0)], axis=0)
+    jumps = _nearby(np.linalg.norm(np.diff(by, axis=0), axis=1))  # a curve may begin inside a link
     apart, (before, after) = right - turns, (np.linalg.norm(each, axis=1) for each in (turns, right))
     sizes = np.linalg.norm(apart, axis=1)
     odd = sizes > LOST[0] + LOST[1] * np.maximum(before, after) + jumps
@@ -246,6 +253,22 @@ def lost_angles(lines: list[Line]) -> list[tuple[str, float, str]]:
     text += f", by its links {round(np.degrees(after[j]), 1):g} degrees"
     size = max(float(sizes[odd].max()), float(np.linalg.norm(apart[odd].sum(axis=0))))
     return [(text, size, "give the bodies the angles of the curve at rest, or centres of mass to these angles")]
+
+
+def _nearby(values: Array) -> Array:
+    """The largest of a value and both next to it, above 0."""
+    wide = np.pad(values, 1)
+    return np.asarray(np.max([wide[:-2], values, wide[2:]], axis=0))
+
+
+def _unsure(line: Line) -> Array:
+    """Relative error of the lengths of links by those of the others, (N,): what the spline adds to their chords."""
+    places, centres = line.curve.places, line.links[:, 2]
+    chords = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    more = np.diff(spline(places)[0]) / chords - 1.0
+    unsure = np.asarray(_nearby(more) + np.median(more))
+    unsure[-1] += abs(2.0 * centres[-2] / chords[-2] - 1.0)  # it is by its centre of mass, as of the link before
+    return unsure
 
 
 def _lengths(lines: list[Line]) -> tuple[list[Line], bool]:
@@ -303,7 +326,7 @@ def _rod(lines: list[Line], laws: list[Law], density: Law, plane: bool) -> tuple
     if not plane:
         frames = rod.frames(np.unique(rod.s))[:-1][np.isin(cuts, s)[:-1]]
         turned = np.einsum("ni,nij->nj", np.cross(hinges, frames[:, :, 0]), frames)
-        roll = _steady(0.5 * np.unwrap(2.0 * np.arctan2(-turned[:, 1], turned[:, 2])))
+        roll = _steady(0.5 * np.unwrap(2.0 * np.arctan2(-turned[:, 1], turned[:, 2])), s[:-1])
         rod.values[:, VALUES.index("roll")] = at(np.stack([roll, np.append(roll[1:], roll[-1])], axis=1))
     return rod, np.isin(cuts, s)
 
@@ -320,15 +343,18 @@ def _steps(law: Law, s: Array, lengths: Array) -> Array:
     )
 
 
-def _steady(roll: Array) -> Array:
-    """Rolls of hinges, rad, without those of single joints off their neighbours."""
+def _steady(roll: Array, s: Array) -> Array:
+    """Rolls of hinges at arc lengths, rad, without those of single joints off their neighbours."""
+
+    def apart(roll: Array) -> Array:
+        share = (s[1:-1] - s[:-2]) / (s[2:] - s[:-2])
+        return np.asarray(roll[:-2] + share * (roll[2:] - roll[:-2]) - roll[1:-1])
+
     for _ in range(len(roll) // 5):
-        off = 0.5 * (roll[:-2] + roll[2:]) - roll[1:-1]
-        j = 1 + int(abs(off).argmax())
-        trial = roll.copy()
-        trial[j] += off[j - 1]
-        rest = abs(np.diff(trial, 2)[max(j - 2, 0) : j + 1]).max()
-        if abs(off[j - 1]) < TILT or rest > 0.5 * abs(off[j - 1]):
+        off, trial = apart(roll), roll.copy()
+        j = int(abs(off).argmax())
+        trial[j + 1] += off[j]
+        if abs(off[j]) < TILT or abs(apart(trial)[max(j - 1, 0) : j + 2]).max() > 0.25 * abs(off[j]):
             break
         roll = trial
     return roll
