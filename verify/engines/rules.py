@@ -37,6 +37,11 @@ SAME = 1e-9
 """Relative difference up to which a stiffness stays as it is, and a place is the wall."""
 
 
+def weights_of(rule: str, n: int) -> Array:
+    """Weights of n joints by the rule at the wall in words: 1 but for those of WEIGHTS."""
+    return np.append(WEIGHTS.get(rule, ()), np.ones(n))[:n]
+
+
 class Judged(NamedTuple):
     """A chain as it is and with correct joints, whose axis is "bending" in either plane, or "torsion".
 
@@ -95,7 +100,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
-    right_ones = inside / np.append(WEIGHTS.get(rule, ()), np.ones(n))[:n]
+    right_ones = inside / weights_of(rule, n)
     names = {line.joints[j]: float(right_ones[j]) for j in (*law.odd, *steps) if meant is None}
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))

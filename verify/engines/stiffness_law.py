@@ -1,6 +1,7 @@
 """The law of EI that the joints of a chain follow: constant, stepped or smooth, and the joints off it."""
 
 import itertools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,9 @@ MANY = 4
 """Joints that a sentence names."""
 
 
+SCENE = "the beam that they mean as a scene"
+
+
 class Law(NamedTuple):
     """EI without the joints off it, at the joints and of the links beyond, (N,), N m^2, and the numbers of those."""
 
@@ -26,11 +30,26 @@ class Law(NamedTuple):
     links: Array
     odd: list[int]
 
+    @property
+    def means(self) -> str:
+        """EI or GJ in words."""
+        ends = " to ".join(f"{x:.6g}" for x in self.joints[[0, -1]])
+        return f"{self.kind}, {ends} N m2" if np.ptp(self.joints) else f"= {self.joints[0]:.6g} N m2"
+
     def text(self, names: list[str], ratios: Array) -> str:
         """The joints off the law by name, of `ratios` times its EI."""
-        each = [f"{names[j]} ({ratios[j]:.3g} times)" for j in self.odd]
-        more = f" and {len(each) - MANY} more" * (len(each) > MANY)
-        return f"joint{'s' * (len(each) > 1)} off a {self.kind} EI: {', '.join(each[:MANY])}{more}"
+        return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)[0]
+
+
+def named(what: str, names: list[str], ratios: Array, odd: Sequence[int]) -> list[str]:
+    """One fault, `what` of the joints `odd` by their names with ratios, or none."""
+    each = [f"{names[j] or 'the wall'} ({ratios[j]:.3g} times)" for j in odd]
+    return [f"{what} {first(each)}"] if each else []
+
+
+def first(texts: list[str]) -> str:
+    """The first MANY, and how many there are more."""
+    return ", ".join(texts[:MANY]) + f" and {len(texts) - MANY} more" * (len(texts) > MANY)
 
 
 def fitted_law(values: Array, places: Array, names: list[str], meant: float | None = None) -> Law:
@@ -74,7 +93,7 @@ def _smooth(values: Array, places: Array, first: int, few: int, names: list[str]
     law, odd, n, x = values.copy(), list[int](), len(values) - first, places[first:]
     if n <= 2 * RUN:
         text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
-        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or the beam that they mean as a scene")
+        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or {SCENE}")
     before, after = (
         np.array([end, *inner, last]) for end, inner, last in ((1, range(n - 2), n - 2), (2, range(2, n), n - 3))
     )
@@ -97,4 +116,4 @@ def _smooth(values: Array, places: Array, first: int, few: int, names: list[str]
         law[first + worst] = expected[worst]
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
-    raise InputError(f"{text}: give the beam that they mean as a scene")
+    raise InputError(f"{text}: give {SCENE}")
