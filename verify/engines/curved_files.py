@@ -16,7 +16,7 @@ from verify.engines.curved import CurvedChain, curved_chain
 from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.meant_rod import UNEVEN, along_curve, law_of_masses, length_errors, meant_rod
-from verify.engines.rules import ADAPTED, SERIES, WEIGHTS, Judged, at_wall, half_links, weights_of
+from verify.engines.rules import ADAPTED, MORE, SERIES, WEIGHTS, Judged, at_wall, half_links, weights_of
 from verify.engines.stiffness_law import ALIKE, SCENE, Law
 from verify.errors import InputError, shown
 from verify.formatting import with_unit
@@ -26,10 +26,9 @@ from verify.settings import WALLS, wall_label
 def needs_rod(line: Line) -> bool:
     """Whether a file is curved, or its masses and stiffnesses vary, which no beam of one mass per length explains."""
     lengths, masses = line.links.T[:2]
-    odd, ei = abs(masses / lengths / np.median(masses / lengths) - 1.0) > UNEVEN, line.springs * half_links(lengths)
-    return line.curve.bent or bool(
-        odd.sum() > max(1, len(odd) // 4) and np.ptp(ei[min(3, len(ei) - 1) :]) > ALIKE * ei[-1]
-    )
+    n, ei = len(lengths), line.springs * half_links(lengths)
+    odd = int((abs(masses / lengths / np.median(masses / lengths) - 1.0) > UNEVEN).sum())
+    return line.curve.bent or (odd > max(1, n // 4) and bool(np.ptp(ei[min(3, n - 1) :]) > ALIKE * ei[-1]))
 
 
 def judge_rod(lines: list[Line], name: str) -> list[Judged]:
@@ -39,7 +38,7 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     """
     lines, on_chords = along_curve(lines)
     _check(lines, name)
-    lengths, errors = lines[0].links[:, 0], length_errors(lines[0])
+    n, half, errors = len(lines[0].springs), half_links(lines[0].links[:, 0]), length_errors(lines[0])
     masses, links = law_of_masses(lines[0], errors, name)
     try:
         rules, laws = zip(*(_rule(line, errors) for line in lines), strict=True)
@@ -48,31 +47,26 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         raise InputError(f"{name}: {text}") from None
     meant = curved_chain(*meant_rod(lines, laws, masses))
     links += links_off(lines, meant, errors)
-    by_law = {
-        line.joints[j]: float(law.joints[j] / half_links(lengths)[j] / weights_of(rule, len(lengths))[j])
-        for line, law, rule in zip(lines, laws, rules, strict=True)
-        for j in law.odd
-    }
-    even = bool(np.ptp(lengths[:3]) < errors[0] * lengths[0])
     each = list(zip(lines, rules, laws, strict=True))
-    walls = [_wall(line, rule, meant, even, kept=bool(by_law)) for line, rule, _ in each]
-    faults = list[str]()
+    odd = {
+        line.joints[j]: float((law.joints / half / weights_of(rule, n))[j]) for line, rule, law in each for j in law.odd
+    }
+    walls = [_wall(line, rule, meant, errors, bool(odd)) for line, rule, _ in each]
+    texts = list[str]()
     for (line, rule, law), (_, right) in zip(each, walls, strict=True):
-        faults += [rule] * (not right)
-        faults += [law.text(line.joints, line.springs * half_links(lengths) / law.joints)] if law.odd else []
-    faults, levels = [*dict.fromkeys(faults), *links], [law.joints[0] for law in laws]
+        texts += [rule] * (not right) + law.faults(line.joints, line.springs * half / law.joints)
+    levels = [law.joints[0] for law in laws]
     mixed = len(lines) > 1 and (len(lines) < len(AXES) or np.ptp(levels) > ALIKE * levels[0])
-    remedy = {}
-    if on_chords and meant.rod.bent:
+    turned = hinges_off(lines, meant) if mixed else []
+    faults, remedy = [*dict.fromkeys(texts), *links, *turned], MORE
+    if turned:
+        remedy = "turn hinges to the axes of the rod at the joints"
+    elif on_chords and meant.rod.bent:
         off = with_unit(float(np.hypot(*np.transpose([link.off for link in meant.links])).max()), "m")
-        remedy = {
-            "remedy": f"shift centres of mass off the chords by up to {off}, to those of the curve between joints"
-        }
-    if mixed and (turned := hinges_off(lines, meant)):
-        faults, remedy = faults + turned, {"remedy": "turn hinges to the axes of the rod at the joints"}
+        remedy = f"shift centres of mass off the chords by up to {off}, to those of the curve between joints"
     present, correct = (_chain(lines, each, meant) for each in ([k.springs for k in lines], [k for k, _ in walls]))
     return [
-        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], by_law, law.means, **remedy)
+        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], odd, law.means, remedy)
         for (line, rule, law), (k, _) in zip(each, walls, strict=True)
     ]
 
@@ -89,12 +83,10 @@ def _rule(line: Line, errors: Array) -> tuple[str, Law]:
     return rule, law._replace(odd=[j for j in law.odd if apart[j] > errors[j]])
 
 
-def _wall(line: Line, rule: str, meant: CurvedChain, even: bool, kept: bool) -> tuple[Array, bool]:
-    """(springs with correct ones at the wall, but for those that are `kept`, whether the rule there is right).
-
-    `even`: the lengths of the first links differ by no more than their errors.
-    """
-    wall = "half" if line.turns == "torsion" and not meant.rod.bent else meant.wall
+def _wall(line: Line, rule: str, meant: CurvedChain, errors: Array, kept: bool) -> tuple[Array, bool]:
+    """(springs with correct ones at the wall, but for those that are `kept`, whether the rule there is right)."""
+    wall, lengths = "half" if line.turns == "torsion" and not meant.rod.bent else meant.wall, line.links[:3, 0]
+    even = bool(np.ptp(lengths) < errors[0] * lengths[0])
     right = rule in (wall_label(wall), SERIES, ADAPTED, *[wall_label("gregory")] * even)
     best = np.array([one.stiffness for joint in meant.joints[:-1] if (one := joint.hinge(line.axis))])
     first = (np.arange(len(best)) < len(WALLS[wall].weights)) & (not (kept or right or np.isnan(line.springs[0])))
@@ -103,30 +95,20 @@ def _wall(line: Line, rule: str, meant: CurvedChain, even: bool, kept: bool) -> 
 
 def _check(lines: list[Line], name: str) -> None:
     """Raise InputError for hinges about one axis in space and joints without a stiffness."""
-    bending, plane, directions = (
-        [line for line in lines if line.axis != "torsion"],
-        len(lines) == 1,
-        lines[0].curve.directions,
-    )
-    hinges = lines[0].curve.hinges
+    plane, hinges, directions = len(lines) == 1, lines[0].curve.hinges, lines[0].curve.directions
     across = np.linalg.norm(np.cross(hinges[:, None], hinges), axis=2)  # sines between hinges
     normal = hinges[int(np.median(across, axis=1).argmin())]
-    off = np.linalg.norm(np.cross(hinges, normal), axis=1)
-    if plane and off.max() > STRAIGHT and abs(directions @ normal).max() < STRAIGHT:
+    off, out = np.linalg.norm(np.cross(hinges, normal), axis=1), abs(directions @ normal).max()
+    if plane and off.max() > STRAIGHT and out < STRAIGHT:
         joint, angle = shown(lines[0].joints[int(off.argmax())]), np.degrees(np.arcsin(min(off.max(), 1.0)))
-        raise InputError(
-            f"{name}: the hinge of {joint} is {angle:.2g} degrees off the normal of the curve's plane, turn it"
-        )
-    if (plane and max(abs(directions @ normal).max(), off.max()) > STRAIGHT) or (not plane and len(bending) < 2):
+        text = f"the hinge of {joint} is {angle:.2g} degrees off the normal of the curve's plane"
+        raise InputError(f"{name}: {text}, turn it")
+    if (plane and max(out, *off) > STRAIGHT) or (not plane and [line.axis for line in lines[1:]] == ["torsion"]):
         raise InputError(f"{name}: on a curve in space its links bend about one axis, give two hinges across each")
     for line in lines:
-        if (
-            free := np.flatnonzero((line.springs == 0.0) | (np.isnan(line.springs) & (np.arange(len(directions)) > 0)))
-        ).size:
-            joint, text = (
-                shown(line.joints[free[0]] or lines[0].joints[free[0]]),
-                "has no stiffness about an axis of the others",
-            )
+        if (free := np.flatnonzero((line.springs == 0.0) | (np.isnan(line.springs) & (np.arange(len(off)) > 0)))).size:
+            joint = shown(line.joints[free[0]] or lines[0].joints[free[0]])
+            text = "has no stiffness about an axis of the others"
             raise InputError(f"{name}: joint {joint} {text}, on a curve give it one")
 
 

@@ -33,6 +33,7 @@ WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
+MORE = "give more links"
 SAME = 1e-9
 """Relative difference up to which a stiffness stays as it is, and a place is the wall."""
 
@@ -61,7 +62,7 @@ class Judged(NamedTuple):
     advice: list[str]
     odd: dict[str, float]
     means: str
-    remedy: str = "give more links"
+    remedy: str = MORE
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -95,7 +96,7 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     right = wall_label(best), *([] if even else [SERIES])
     wall = [rule] if rule not in right and support == "clamped" else []
     joints, links = _faults(line, expected, sum(one.mass for one in beam.mass), spacing, stiffness / reference)
-    odd = [law.text(line.joints, k * half_links(lengths / scale) / law.joints)] if law.odd else []
+    odd = law.faults(line.joints, k * half_links(lengths / scale) / law.joints)
     inside = reference / base
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]

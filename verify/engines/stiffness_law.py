@@ -36,9 +36,9 @@ class Law(NamedTuple):
         ends = " to ".join(f"{x:.6g}" for x in self.joints[[0, -1]])
         return f"{self.kind}, {ends} N m2" if np.ptp(self.joints) else f"= {self.joints[0]:.6g} N m2"
 
-    def text(self, names: list[str], ratios: Array) -> str:
-        """The joints off the law by name, of `ratios` times its EI."""
-        return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)[0]
+    def faults(self, names: list[str], ratios: Array) -> list[str]:
+        """The joints off the law by name, of `ratios` times its EI, as one fault or none."""
+        return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)
 
 
 def named(what: str, names: list[str], ratios: Array, odd: Sequence[int]) -> list[str]:
