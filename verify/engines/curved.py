@@ -99,8 +99,8 @@ class CurvedChain(RigidChain):
     def on_chords(self) -> "CurvedChain":
         """The chain with centres of mass on its chords, order 2, as of straight links from joint to joint."""
         masses, centres, inertias = self.bodies
-        starts, ways = self.places[:-1], self.frames[:, :, 0]
-        centres = starts + np.einsum("ni,ni->n", centres - starts, ways)[:, None] * ways
+        starts, directions = self.places[:-1], self.frames[:, :, 0]
+        centres = starts + np.einsum("ni,ni->n", centres - starts, directions)[:, None] * directions
         return replace(self, bodies=(masses, centres, inertias))
 
     def exact_hz(self, axis: Axis = "bending", n_modes: int = 3) -> Array:
@@ -113,12 +113,12 @@ def curved_chain(rod: Rod, nodes: Array) -> CurvedChain:
     n, places, edges = len(nodes) - 1, rod.place(nodes), np.sort(np.append(nodes, 0.5 * (nodes[1:] + nodes[:-1])))
     chords, sections = np.diff(places, axis=0), rod.frames(edges)
     lengths, axes = np.linalg.norm(chords, axis=1), sections[:-1:2]
-    ways = chords / lengths[:, None]
-    if np.einsum("ni,ni->n", ways, np.vstack([axes[:1, :, 0], ways[:-1]])).min() < BACK:
+    directions = chords / lengths[:, None]
+    if np.einsum("ni,ni->n", directions, np.vstack([axes[:1, :, 0], directions[:-1]])).min() < BACK:
         raise InputError("curve: two links point in opposite directions, give more links or points along the turn")
-    across = np.cross(sections[1::2, :, 2], ways)
+    across = np.cross(sections[1::2, :, 2], directions)
     across /= np.linalg.norm(across, axis=1)[:, None]
-    frames = np.stack([ways, across, np.cross(ways, across)], axis=2)
+    frames = np.stack([directions, across, np.cross(directions, across)], axis=2)
     masses, centres, inertias = _bodies(rod, nodes, places, frames)
     soft, wall = _compliances(rod, edges)
 

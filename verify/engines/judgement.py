@@ -12,7 +12,8 @@ import numpy as np
 
 from verify.analysis.plausibility import unit_margins
 from verify.analysis.verdict import FINE, Margin, per_cent
-from verify.engines.curved_files import judge_rod, lost_angles, needs_rod, weight
+from verify.engines.curve_faults import lost_angles
+from verify.engines.curved_files import judge_rod, needs_rod, rod_under_gravity
 from verify.engines.line import Line, lines
 from verify.engines.reading import DRAG, Solid, read
 from verify.engines.rules import SAME, SQUARE, Judged, clamped, elastic_clamp, half_links, judge
@@ -96,7 +97,7 @@ def judge_file(
     run = partial(judge_runs, exact=exact, beam=judged[0].present.beam, setting=setting, within=within)
     ran = run([judged[0].present] if rod else [*(one.line for one in judged), *lone])
     units = unit_margins(beam or judged[0].correct.beam)
-    others = [*units, *ran.margins, *(weight if rod else under_gravity)(judged, solids, gravity, within)]
+    others = [*units, *ran.margins, *(rod_under_gravity if rod else under_gravity)(judged, solids, gravity, within)]
     notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts."] * rod
     tables = [Table("Frequencies", columns, rows, notes), *ran.tables, *map(_joints, judged)]
     warnings = [text for one in judged for text in one.advice]

@@ -52,7 +52,7 @@ class Curve(NamedTuple):
     """
 
     places: Array
-    ways: Array
+    directions: Array
     bodies: tuple[Array, Array, Array]
     hinges: Array
     bent: bool
@@ -108,24 +108,26 @@ def _links(parts: list[tuple[list[Move], list[Solid]]], name: str) -> tuple[Arra
     curved = not reach or bool(max(np.linalg.norm(one, axis=1).max() for one in off) > STRAIGHT * reach)
     if len(parts) < 2 + curved:
         raise InputError(f"{name}: give two links or more, on a curve three")
-    ways, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)
+    directions, steps = np.tile(along, (len(parts), 1)), np.diff((places - places[0]) @ along)
     if curved:
         steps, tips = np.diff(places, axis=0), (centres - places)[-2:]
-        ways = np.vstack([steps, tips[-1:] if tips[-1].any() else steps[-1:]])
-        ways, steps = ways / np.linalg.norm(ways, axis=1)[:, None], np.linalg.norm(steps, axis=1)
-        # the centre of mass of a piece of a curve is off its chord, of the last one as of the one before
-        ways[-1] += np.cross(np.cross(tips[0], ways[-2]) / (np.linalg.norm(tips[0]) or 1.0), ways[-1])
-        ways[-1] /= np.linalg.norm(ways[-1])
-    centre = np.einsum("ni,ni->n", centres - places, ways)
-    if curved and np.linalg.norm(centres - places - centre[:, None] * ways, axis=1).max() > BOW * steps.max():
+        directions = np.vstack([steps, tips[-1:] if tips[-1].any() else steps[-1:]])
+        directions, steps = directions / np.linalg.norm(directions, axis=1)[:, None], np.linalg.norm(steps, axis=1)
+        # the centre of mass of a piece of a curve is off its chord by an angle in proportion to length and curvature
+        size = np.linalg.norm(tips, axis=1)
+        directions[-1] += np.cross(np.cross(tips[0], directions[-2]) * size[1] / (size[0] ** 2 or 1.0), directions[-1])
+        directions[-1] /= np.linalg.norm(directions[-1])
+    centre = np.einsum("ni,ni->n", centres - places, directions)
+    if curved and np.linalg.norm(centres - places - centre[:, None] * directions, axis=1).max() > BOW * steps.max():
         text = "centres of mass are off the lines between its joints, give links from joint to joint, or more of them"
         raise InputError(f"{name}: {text}")
     share = centre[-2] / steps[-1] if curved else np.median(centre[:-1] / steps)  # it varies along a tapered rod
     last = float(centre[-1] / max(share, 0.1)) or float(steps[-1])
     heavy = masses[-1] / last * (steps[-1] / masses[-2] if curved else 1.0 / np.median(masses[:-1] / steps)) - 1.0
-    if heavy > 0.01 or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
+    longer = (1.0 - directions[-1] @ directions[-2]) / 12.0  # an arc than its chord
+    if heavy > 0.01 + longer or (not curved and heavy < -0.01):  # a tapered rod is lighter at its end
         last = float(steps[-1])  # a body of the end moves the centre of mass
-    return places, ways, np.append(steps, last), curved
+    return places, directions, np.append(steps, last), curved
 
 
 def lines(solids: list[Solid], name: str) -> list[Line]:
@@ -134,15 +136,15 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     Raises InputError for what is no chain of links with hinges along or across them.
     """
     parts = _chain(solids, name)
-    mains, (places, ways, lengths, curved) = [members[0] for _, members in parts], _links(parts, name)
-    turned = _axes(parts, ways, name, curved)
+    mains, (places, directions, lengths, curved) = [members[0] for _, members in parts], _links(parts, name)
+    turned = _axes(parts, directions, name, curved)
     whole = [_joined(members) for _, members in parts]
     masses, inertias = np.array([one.mass for one in whole]), np.array([one.inertia for one in whole])
-    centre = np.einsum("ni,ni->n", np.array([one.centre for one in whole]) - places, ways)
-    prism, spins = masses * lengths**2 / 6.0, np.einsum("ni,nij,nj->n", ways, inertias, ways)
+    centre = np.einsum("ni,ni->n", np.array([one.centre for one in whole]) - places, directions)
+    prism, spins = masses * lengths**2 / 6.0, np.einsum("ni,nij,nj->n", directions, inertias, directions)
     apart = np.trace(inertias, axis1=1, axis2=2) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
-    ends = np.vstack([places, places[-1] + lengths[-1] * ways[-1]])
+    ends = np.vstack([places, places[-1] + lengths[-1] * directions[-1]])
     bodies = masses, np.array([one.centre for one in whole]), inertias
     for axis, about in zip(AXES, turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ e) > 0.8] for e, (moves, _) in zip(about, parts, strict=True)]
@@ -165,17 +167,21 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
             np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")
         )
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
-        seen = _direction(about[0]), _direction(np.cross(ways[0], about[0])), _deep(mains, ways, about, solid)
+        seen = (
+            _direction(about[0]),
+            _direction(np.cross(directions[0], about[0])),
+            _deep(mains, directions, about, solid),
+        )
         hinges = np.array([moves[0].axis if moves else e for moves, e in zip(own, about, strict=True)])
-        curve = Curve(ends, ways, bodies, hinges, curved)
+        curve = Curve(ends, directions, bodies, hinges, curved)
         found.append(Line(axis, joints, springs, np.stack(links, 1), solid, *seen, ball, dashpots, armatures, curve))
     return found
 
 
-def _axes(parts: list[tuple[list[Move], list[Solid]]], ways: Array, name: str, curved: bool) -> list[Array]:
+def _axes(parts: list[tuple[list[Move], list[Solid]]], directions: Array, name: str, curved: bool) -> list[Array]:
     """Directions of the hinges across, of those at right angles, and along the links at every joint, (N, 3) each."""
     hinges = [(j, one) for j, (moves, _) in enumerate(parts) for one in moves]
-    before = np.vstack([ways[:1], ways[:-1]]) + ways
+    before = np.vstack([directions[:1], directions[:-1]]) + directions
     before /= np.linalg.norm(before, axis=1)[:, None]
     free = TURN if curved else STRAIGHT
     across = next((one.axis for j, one in hinges if one.stiffness and abs(one.axis @ before[j]) < free), None)
@@ -201,10 +207,10 @@ def _direction(about: Array) -> str:
     return " ".join(f"{one:.3g}" for one in np.round(about if about.sum() > 0.0 else -about, 6) + 0.0)
 
 
-def _deep(mains: list[Solid], ways: Array, about: Array, solid: bool) -> tuple[float, float]:
+def _deep(mains: list[Solid], directions: Array, about: Array, solid: bool) -> tuple[float, float]:
     """(b/a)^2 of a section of depth b across the hinges and a along them, by what is drawn and by inertias, or NaN."""
-    across = np.cross(ways, about)
-    rows = list(zip(mains, ways, np.cross(across, ways), across, strict=True))
+    across = np.cross(directions, about)
+    rows = list(zip(mains, directions, np.cross(across, directions), across, strict=True))
     drawn = [(d @ one.shape @ d, a @ one.shape @ a) for one, _, a, d in rows if one.shape.any()]
     spins = [[d @ one.inertia @ d for d in each] for one, *each in rows]
     inert = [(x + a - d, x + d - a) for x, a, d in spins] if solid else []

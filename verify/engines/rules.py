@@ -14,7 +14,7 @@ import numpy as np
 from verify.arrays import Array
 from verify.engines.description import Hinge, Joint, Link, RigidChain
 from verify.engines.line import Line
-from verify.engines.stiffness_law import ALIKE, ROUGH, Law, law_of
+from verify.engines.stiffness_law import ALIKE, ROUGH, Law, fitted_law
 from verify.errors import InputError
 from verify.problem.beam import Beam
 from verify.problem.cross_section import Section
@@ -33,8 +33,14 @@ WEIGHTS = {wall_label(name): rule.weights for name, rule in WALLS.items() if not
 SPACINGS = ("", "the mean length", "the length of the link beyond", "the length of the link before")
 SQUARE = 16 / (3 * pi)
 """Second moment of area of a square over that of the circle in it."""
+MORE = "give more links"
 SAME = 1e-9
 """Relative difference up to which a stiffness stays as it is, and a place is the wall."""
+
+
+def weights_of(rule: str, n: int) -> Array:
+    """Weights of n joints by the rule at the wall in words: 1 but for those of WEIGHTS."""
+    return np.append(WEIGHTS.get(rule, ()), np.ones(n))[:n]
 
 
 class Judged(NamedTuple):
@@ -56,7 +62,7 @@ class Judged(NamedTuple):
     advice: list[str]
     odd: dict[str, float]
     means: str
-    remedy: str = "give more links"
+    remedy: str = MORE
 
 
 def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli") -> Judged:
@@ -90,12 +96,12 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     right = wall_label(best), *([] if even else [SERIES])
     wall = [rule] if rule not in right and support == "clamped" else []
     joints, links = _faults(line, expected, sum(one.mass for one in beam.mass), spacing, stiffness / reference)
-    odd = [law.text(line.joints, k * half_links(lengths / scale) / law.joints)] if law.odd else []
+    odd = law.faults(line.joints, k * half_links(lengths / scale) / law.joints)
     inside = reference / base
     steps = 1 + np.flatnonzero(np.diff(law.links)) if law.kind != "smooth" else np.zeros(0, int)
     steps = steps[abs(k[steps] / inside[steps] - 1.0) > ALIKE]
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
-    right_ones = inside / np.append(WEIGHTS.get(rule, ()), np.ones(n))[:n]
+    right_ones = inside / weights_of(rule, n)
     names = {line.joints[j]: float(right_ones[j]) for j in (*law.odd, *steps) if meant is None}
     text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
@@ -181,7 +187,7 @@ def at_wall(values: Array, names: list[str], support: str, soft: Array, meant: f
     rule, _, level = _rule(values, [np.ones(n)], support, _weld(soft))
     if rule != IRREGULAR:
         return rule, Law("constant", np.full(n, level), np.full(n, level), [])
-    law = law_of(values, names, meant)
+    law = fitted_law(values, np.append(0.0, np.cumsum(soft[:-1])), names, meant)
     steady = np.where(np.isin(range(n), law.odd), 1.0, values / law.joints)
     alike = 0.5 * ROUGH if law.kind in ("smooth", "nearly constant") else ALIKE
     rule, *_ = _rule(steady, [np.ones(n)], support, _weld(soft), alike)

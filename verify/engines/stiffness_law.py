@@ -1,6 +1,7 @@
 """The law of EI that the joints of a chain follow: constant, stepped or smooth, and the joints off it."""
 
 import itertools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,9 +14,12 @@ ALIKE = 2e-3
 RUN = 3
 """Joints in a row of one EI that are a piece; fewer may be off the law."""
 ROUGH = 0.04
-"""Distance of EI at a joint from the geometric mean of its neighbours up to which the law is smooth."""
+"""Relative distance of EI at a joint from that of a cone through its neighbours up to which the law is smooth."""
 MANY = 4
 """Joints that a sentence names."""
+
+
+SCENE = "the beam that they mean as a scene"
 
 
 class Law(NamedTuple):
@@ -26,15 +30,30 @@ class Law(NamedTuple):
     links: Array
     odd: list[int]
 
-    def text(self, names: list[str], ratios: Array) -> str:
-        """The joints off the law by name, of `ratios` times its EI."""
-        each = [f"{names[j]} ({ratios[j]:.3g} times)" for j in self.odd]
-        more = f" and {len(each) - MANY} more" * (len(each) > MANY)
-        return f"joint{'s' * (len(each) > 1)} off a {self.kind} EI: {', '.join(each[:MANY])}{more}"
+    @property
+    def means(self) -> str:
+        """EI or GJ in words."""
+        ends = " to ".join(f"{x:.6g}" for x in self.joints[[0, -1]])
+        return f"{self.kind}, {ends} N m2" if np.ptp(self.joints) else f"= {self.joints[0]:.6g} N m2"
+
+    def faults(self, names: list[str], ratios: Array) -> list[str]:
+        """The joints off the law by name, of `ratios` times its EI, as one fault or none."""
+        return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)
 
 
-def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
-    """The law of EI at the joints, `values` (N,). Those next to the wall, which have factors, follow from the others.
+def named(what: str, names: list[str], ratios: Array, odd: Sequence[int]) -> list[str]:
+    """One fault, `what` of the joints `odd` by their names with ratios, or none."""
+    each = [f"{names[j] or 'the wall'} ({ratios[j]:.3g} times)" for j in odd]
+    return [f"{what} {first(each)}"] if each else []
+
+
+def first(texts: list[str]) -> str:
+    """The first MANY, and how many there are more."""
+    return ", ".join(texts[:MANY]) + f" and {len(texts) - MANY} more" * (len(texts) > MANY)
+
+
+def fitted_law(values: Array, places: Array, names: list[str], meant: float | None = None) -> Law:
+    """The law of EI at the joints, `values`, (N,), at `places`. Those next to the wall, which have factors, follow.
 
     `meant`: constant EI that a scene has, N m^2, for values that have none. Raises InputError for values of no law.
     """
@@ -66,22 +85,28 @@ def law_of(values: Array, names: list[str], meant: float | None = None) -> Law:
         series = [j for j in lone if low[j] < values[j] < high[j]]
         joints = np.where(np.isin(range(n), series), values, ahead)
         return Law("stepped", joints, ahead, [j for j in lone if j not in series])
-    return _smooth(values, first, few, names)
+    return _smooth(values, places / np.ptp(places), first, few, names)
 
 
-def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
-    """The law of which each value is near the geometric mean of its neighbours but for a `few` joints."""
-    law, odd = values.copy(), list[int]()
-    while len(law) - first > 2 * RUN:
-        log = np.log(law[first:])
-        ends = 2.0 * log[[1, -2]] - log[[2, -3]]
-        expected = np.exp(np.concatenate([ends[:1], 0.5 * (log[:-2] + log[2:]), ends[1:]]))
+def _smooth(values: Array, places: Array, first: int, few: int, names: list[str]) -> Law:
+    """The law of which each value is near that of a cone, EI^(1/4), through its neighbours but for a `few` joints."""
+    law, odd, n, x = values.copy(), list[int](), len(values) - first, places[first:]
+    if n <= 2 * RUN:
+        text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
+        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or {SCENE}")
+    before, after = (
+        np.array([end, *inner, last]) for end, inner, last in ((1, range(n - 2), n - 2), (2, range(2, n), n - 3))
+    )
+    share = (x - x[before]) / (x[after] - x[before])
+    while law.min() > 0.0:
+        size = law[first:] ** 0.25
+        expected = np.maximum(size[before] + share * (size[after] - size[before]), 0.0) ** 4
         apart = abs(law[first:] - expected) / np.maximum(law[first:], expected)
         apart[-2:] *= 0.1  # without much moment
         worst = int(apart.argmax())
         if apart[worst] < ROUGH:
-            near = np.arange(first, first + 6)  # a cubic: d^4 of a conical rod to 5e-4, a quadratic to 7e-3
-            law[:first] = np.polyval(np.polyfit(near, law[near], 3), range(first))
+            near = slice(first, first + 6)  # a cubic: d^4 of a conical rod to 5e-4, a quadratic to 7e-3
+            law[:first] = np.polyval(np.polyfit(places[near], law[near], 3), places[:first])
             if law.min() <= 0.0:
                 break
             return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))
@@ -89,9 +114,6 @@ def _smooth(values: Array, first: int, few: int, names: list[str]) -> Law:
             break
         odd.append(first + worst)
         law[first + worst] = expected[worst]
-    if len(values) - first <= 2 * RUN:
-        text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
-        raise InputError(f"{text}: give {2 * RUN + 4} links or more, or the beam that they mean as a scene")
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
-    raise InputError(f"{text}: give the beam that they mean as a scene")
+    raise InputError(f"{text}: give {SCENE}")
