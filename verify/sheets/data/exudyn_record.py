@@ -24,14 +24,14 @@ with open(options.sheet, "rb") as file:
 case = sheet["chain"]
 system, tree, last = chain.build(), 0, len(chain.TREE) - 1
 names, _, offsets, springs = (list(one) for one in list(zip(*chain.TREE, strict=True))[:4])
-bending = np.array([name.endswith("bending") for name in names])
+bending = -1.0 * np.array([name.endswith("bending") for name in names])  # upwards is negative about y
 torsion = np.array([name.endswith("torsion") for name in names])
 length = chain.TIP[2]
 places = np.cumsum(offsets)
 start = bending * case.get("start_force", 0.0) * (length - places) + torsion * case.get("start_moment", 0.0)
 if start.any():
     start = start / np.array(springs)
-start[np.flatnonzero(bending)[0]] += case.get("start_angle", 0.0)
+start[np.flatnonzero(bending)[0]] -= case.get("start_angle", 0.0)
 system.SetNodeParameter(0, "initialCoordinates", start.tolist())
 system.SetObjectParameter(tree, "gravity", list(case.get("gravity", (0, 0, 0))))
 at = {"objectNumber": tree, "linkNumber": last, "localPosition": [chain.TIP[1], 0.0, 0.0]}
@@ -75,7 +75,7 @@ if "energy" in sheet["columns"]:  # of links that turn about parallel axes, from
     masses, centres, inertias = (np.array(one) for one in list(zip(*chain.TREE, strict=True))[5:])
     inertias = inertias[:, 1]
     speed = system.GetSensorStoredData(rates)[:, 1:]
-    phi, spin = np.cumsum(turned[:, 1:], axis=1), np.cumsum(speed, axis=1)
+    phi, spin = -np.cumsum(turned[:, 1:], axis=1), -np.cumsum(speed, axis=1)
     part = np.array([*offsets[1:], 0.0])  # of a link to its next joint
     along = np.stack([np.cos(phi), np.sin(phi)])
     across = np.stack([-np.sin(phi), np.cos(phi)]) * spin
