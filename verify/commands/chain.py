@@ -91,9 +91,7 @@ def chain(
     shared |= {"step": None if time_step is None else typed(time_step, Seconds, "step")}
     if scene.lower().endswith(".csv"):
         if wall != DEFAULT.wall:
-            raise InputError(
-                "--wall is of a straight beam, leave it out: a curve has the best one that its links allow"
-            )
+            raise InputError("--wall is of a straight beam, leave it out: a curve has the best that its links allow")
         result = curve_chain(scene, count, section=section, overrides=overrides, **shared)
     elif section:
         raise InputError("--section is of a curve, curve.csv, leave it out")
@@ -131,9 +129,8 @@ def judge_chain(
     if records:
         result = with_run(result, records[0], relative_error(within))
     if not any(formats.values()):
-        result = replace(
-            result, tables=[_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
-        )
+        tables = [_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
+        result = replace(result, tables=tables)
     show(result, **formats)
 
 
@@ -141,8 +138,7 @@ def _shortened(table: Table) -> Table:
     """The first rows and the last, and a row with what those in between have in common."""
     rows = [(str(row[0]), *row[1:]) for row in table.rows]
     inner = list(zip(*rows[FIRST:-1], strict=True))[1:]
-    alike = [
-        values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None for values in inner
-    ]
+    different = [{f"{v:.9g}" if isinstance(v, float) else v for v in values} for values in inner]
+    alike = [values[0] if len(each) == 1 else None for values, each in zip(inner, different, strict=True)]
     between = [(f"{FIRST} to {len(rows) - 2}", *alike)] if len(rows) > FIRST + 2 else rows[FIRST:-1]
     return replace(table, rows=[*rows[:FIRST], *between, *rows[-1:]] if len(rows) > FIRST else rows)

@@ -100,18 +100,9 @@ def compare(
     elif frequencies is None and len(words) > 1:
         raise InputError(f"frequencies = {' '.join(words)}: give one file, or numbers alone")
     with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
-        result = compare_frequencies(
-            loaded,
-            frequencies or Path(words[0]),
-            unit=unit,
-            shapes=forms,
-            count=count,
-            kind=kind,
-            mode=mode,
-            within=limit,
-            theory=theory,
-            progress=step,
-        )
+        options: dict[str, Any] = {"unit": unit, "count": count, "kind": kind, "mode": mode, "theory": theory}
+        words_or_file = frequencies or Path(words[0])
+        result = compare_frequencies(loaded, words_or_file, shapes=forms, within=limit, progress=step, **options)
     shared.show(result, **formats)
 
 
@@ -141,10 +132,8 @@ def _steady(
 
     if len(words) != 1:
         raise click.UsageError("Give one record to --drive.")
-    hz, at = (
-        None if drive == "scene" else typed(drive, shared.Hertz, "drive"),
-        [typed(x, shared.Metres, "at") for x in places],
-    )
+    hz = None if drive == "scene" else typed(drive, shared.Hertz, "drive")
+    at = [typed(x, shared.Metres, "at") for x in places]
     limit = typed(within, Relative, "within")
     result = compare_steady(load_scene(scene, overrides, {"drive"}), Path(words[0]), hz, at, limit)
     shared.show(result, **formats)
