@@ -79,8 +79,10 @@ def compare(
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
-        run = {"engine": engine, "step": None if time_step is None else typed(time_step, shared.Seconds, "step")}
-        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
+        step = None if time_step is None else typed(time_step, shared.Seconds, "step")
+        options: dict[str, Any] = {"modes": mode or 3, "theory": theory, "engine": engine, "step": step}
+        options |= {"corrected": Path(corrected) if corrected else None}
+        return judge_chain([scene, *words], overrides, within, formats, options)
     if drive is not None:
         return _steady(scene, words, overrides, drive, places, within, formats)
     if places:
@@ -100,7 +102,7 @@ def compare(
     elif frequencies is None and len(words) > 1:
         raise InputError(f"frequencies = {' '.join(words)}: give one file, or numbers alone")
     with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
-        options: dict[str, Any] = {"unit": unit, "count": count, "kind": kind, "mode": mode, "theory": theory}
+        options = {"unit": unit, "count": count, "kind": kind, "mode": mode, "theory": theory}
         words_or_file = frequencies or Path(words[0])
         result = compare_frequencies(loaded, words_or_file, shapes=forms, within=limit, progress=step, **options)
     shared.show(result, **formats)

@@ -65,9 +65,11 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         off = with_unit(float(np.hypot(*np.transpose([link.off for link in meant.links])).max()), "m")
         remedy = f"shift centres of mass off the chords by up to {off}, to those of the curve between joints"
     present, correct = (_chain(lines, each, meant) for each in ([k.springs for k in lines], [k for k, _ in walls]))
+    means = (law.kind + ", {:.6g} to {:.6g} N m2" if np.ptp(law.joints) else "= {:.6g} N m2" for law in laws)
+    texts = [text.format(*law.joints[[0, -1]]) for text, law in zip(means, laws, strict=True)]
     return [
-        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], odd, law.means, remedy)
-        for (line, rule, law), (k, _) in zip(each, walls, strict=True)
+        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], odd, text, remedy)
+        for (line, rule, law), (k, _), text in zip(each, walls, texts, strict=True)
     ]
 
 

@@ -97,7 +97,7 @@ def judge_file(
     ran = run([judged[0].present] if rod else [*(one.line for one in judged), *lone])
     units = unit_margins(beam or judged[0].correct.beam)
     others = [*units, *ran.margins, *(rod_under_gravity if rod else under_gravity)(judged, solids, gravity, within)]
-    notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts."] * rod
+    notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts, of long chains in 1 and 2."] * rod
     tables = [Table("Frequencies", columns, rows, notes), *ran.tables, *map(_joints, judged)]
     warnings = [text for one in judged for text in one.advice]
     clashes, changes = [*contradictions(found, axes, beam), *lost_angles(every)], _changes(judged)

@@ -30,12 +30,6 @@ class Law(NamedTuple):
     links: Array
     odd: list[int]
 
-    @property
-    def means(self) -> str:
-        """EI or GJ in words."""
-        ends = " to ".join(f"{x:.6g}" for x in self.joints[[0, -1]])
-        return f"{self.kind}, {ends} N m2" if np.ptp(self.joints) else f"= {self.joints[0]:.6g} N m2"
-
     def faults(self, names: list[str], ratios: Array) -> list[str]:
         """The joints off the law by name, of `ratios` times its EI, as one fault or none."""
         return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)
