@@ -104,7 +104,7 @@ def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record
         raise InputError(f"{source} has {len(table) * bool(names)} rows with values: give {FEWEST} or more")
     times = table[:, 0]
     if len(back := np.flatnonzero(np.diff(times) <= 0.0)):
-        k, remedy = int(back[0]) + 1, "give ascending times, of one run alone"
+        k, remedy = int(back[0]) + 1, "give ascending times of one run; MuJoCo restarts one that diverges"
         raise InputError(f"{source}, row {place[k] + 1}: time {times[k]:.9g} after {times[k - 1]:.9g}: {remedy}")
     even, digit = np.polynomial.Polynomial.fit(place, times, 1)(place), _last_digit(times)
     if 1e-6 * digit < abs(even - times).max() <= ROUNDED * digit:
