@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import Beam, ExactModel, PointForce, SegmentModel, verdict
 from verify.analysis import comparison, sizing
 from verify.analysis.comparison import grid_convergence
 from verify.analysis.sizing import choose
@@ -18,6 +19,7 @@ from verify.linear.registry import MODELS
 from verify.problem.cross_section import Section
 from verify.problem.point_attachments import PointMass
 from verify.scene.load import load_scene
+from verify.travelling_wave import measure
 
 # --- Comparison ---
 
@@ -245,3 +247,21 @@ def test_the_mode_of_the_largest_size_is_named_and_may_not_be_the_highest():
         one for one in choose(bench, range(1, 13), 1e-3, Rules(wall="half"))[0] if one.variant.model == "segment"
     )
     assert (twelve.size.count, twelve.size.mode) == (found.count, 10)
+
+
+def test_a_driven_wave_is_trusted_where_its_reflection_is():
+    """A frequency error of shear or of links changes the reflection by k L/4 times itself."""
+    beam = Beam(length=0.12, width=0.008, thickness=0.0015, youngs_modulus=70e9, density=2700.0)
+    forces = [PointForce(position=0.011), PointForce(position=0.109, phase_deg=90.0)]
+
+    def reflection(model):
+        return measure(model.harmonic(forces, 7450.0), (0.03, 0.09)).reflection
+
+    exact, errors = reflection(ExactModel(beam)), {}
+    errors["shear and rotary inertia"] = reflection(ExactModel(beam, theory="timoshenko")) - exact
+    errors["discretisation of 14 segments"] = reflection(SegmentModel(beam, 14)) - exact
+    errors["discretisation of 40 segments"] = reflection(SegmentModel(beam, 40)) - exact
+    margins = {one.name: one for n in (14, 40) for one in verdict(SegmentModel(beam, n), frequency_hz=7450.0).margins}
+    for name, error in errors.items():
+        assert 0.01 * margins[name].size / margins[name].fine == pytest.approx(abs(error), rel=0.2, abs=2e-4)
+    assert [margins[name].level for name in errors] == ["conditional", "conditional", "trusted"]

@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 import verify
 from verify.errors import InputError
@@ -68,3 +69,19 @@ def test_a_mode_of_two_cycles_beside_an_aliased_one_is_left_out(tmp_path):
     assert result.data["passed"]
     assert len(result.data["record"]) > 4
     assert [row["listed"] for row in result.tables[0].records()] == pytest.approx(hertz[:4], rel=5e-3)
+
+
+@pytest.mark.parametrize("supports", [("clamped", "free"), ("pinned", "pinned")])
+def test_tones_of_a_large_vibration_are_no_modes_of_the_beam(tmp_path, supports):
+    """A square term of the signal rings at sums and differences; 9 f of pinned ends, f + 8 f, is a mode."""
+    beam = replace(STEEL, supports=supports)
+    hertz = verify.ExactModel(replace(beam, youngs_modulus=0.9 * 210e9)).modes(3).frequencies_hz
+    path, times, small = tmp_path / "ring.csv", np.arange(0.0, 2.0, 4e-4), 0.0
+    for hz, size in zip(hertz, (1.0, 0.3, 0.1), strict=True):
+        small = small + size * np.exp(-0.003 * 2.0 * pi * hz * times) * np.cos(2.0 * pi * hz * times)
+    np.savetxt(
+        path, np.stack([times, small + 0.002 * small**2], axis=1), header="t,z", delimiter=",", comments="", fmt="%.10g"
+    )
+    result = verify.compare_frequencies(beam, path)
+    assert len(result.data["record"]) > 4
+    assert [row["listed"] for row in result.tables[0].records()] == pytest.approx(hertz, rel=1e-4)

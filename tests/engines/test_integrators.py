@@ -231,10 +231,10 @@ def test_drag_and_dashpots_by_closed_forms():
 
 def test_links_for_a_step_by_the_trade():
     rows = trade([strip(n, 0.01) for n in (4, 5, 6, 8, 12)], Steps(1e-3, "MuJoCo"))
-    assert choose(rows, 2, 0.01).links == 6
+    assert choose(rows, 2, 0.01).chain.count == 6
     assert choose(rows, 3, 0.01) is None
     assert largest_mode(rows, 0.01) == 2
-    assert [row.links for row in rows if row.beta] == [8, 12]
+    assert [row.chain.count for row in rows if row.beta] == [8, 12]
     assert all(row.limit > 1e-3 for row in rows if row.beta)
     plain = trade([strip(8)], Steps(1e-4, "MuJoCo"))[0]
     assert 100 * plain.space == pytest.approx([0.0014, -0.052, -0.81], abs=0.006)

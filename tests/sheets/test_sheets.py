@@ -298,6 +298,15 @@ def test_a_public_defect_is_named_from_its_record_alone(record, name, figure, me
     assert words in found["cause"]
 
 
+@pytest.mark.parametrize("share", [-1.1, 0.3])
+def test_friction_that_is_not_opposite_to_the_slip_is_named_by_its_motion_to_either_side(tmp_path, share):
+    table = np.loadtxt(RECORDS / "pyramidal-cone.csv", delimiter=",", skiprows=1)
+    table[:, 3] *= share
+    np.savetxt(tmp_path / "run.csv", table, delimiter=",", header="time,position,speed,sideways", comments="")
+    figures = judge_case("ramp-slip", [tmp_path / "run.csv"]).data["figures"]
+    assert "cone" in next(one["cause"] for one in figures if one["figure"] == "sideways")
+
+
 def planted(table, mistake):
     """A table of times and columns with a mistake of its making, and the header's columns exchanged or not."""
     t, y = table[:, :1], table[:, 1:]

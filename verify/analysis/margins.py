@@ -125,15 +125,18 @@ def beam_margins(
 
 
 def _against_spacing(margin: Margin, spacing: float) -> Margin:
-    """A frequency error at a driven wave, limited by half the relative spacing of the modes, 2 pi / (k L)."""
-    limit = min(margin.limit, 0.5 * spacing)
+    """A frequency error at a driven wave, limited by half the relative spacing of the modes, 2 pi / (k L).
+
+    It changes the reflection of a wave between two modes by k L/4 times itself, which is fine up to FINE.
+    """
+    limit, fine = min(margin.limit, 0.5 * spacing), min(margin.fine, 2.0 / pi * FINE * spacing)
     if not margin.is_error or margin.size <= limit:
-        return replace(margin, limit=limit, fine=min(margin.fine, limit)) if margin.is_error else margin
+        return replace(margin, limit=limit, fine=fine) if margin.is_error else margin
     failure = (
         f"{margin.name} change{'s' * (margin.name != SHEAR)} frequencies by {per_cent(margin.size)} {margin.where}, "
         f"where modes are {per_cent(spacing)} apart: the wave may be a standing one or travel the other way"
     )
-    return replace(margin, limit=limit, fine=min(margin.fine, limit), failure=margin.failure or failure)
+    return replace(margin, limit=limit, fine=fine, failure=margin.failure or failure)
 
 
 def _wavenumber(cache: SolutionCache, mode: int | None, frequency_hz: float | None) -> float | None:

@@ -31,6 +31,8 @@ COMPARED = "gregory", "half", "full", "rigid"
 """Rules at a clamped end that are compared."""
 AUTOMATIC = {"MuJoCo": ("implicitfast", "discrete")}
 """Integrators that are tried in turn where none is named; of other engines the first in `INTEGRATORS`."""
+MJCF = ".xml", ".mjcf"
+"""Ends of files for MuJoCo, which has drag and armature."""
 MOST_TRIED = 30
 """Links beyond the fewest, one more at a time, among which those for a step are sought."""
 
@@ -83,21 +85,19 @@ def made_chain(
     check_type("engine", engine, str)
     check_type("path", path or "", str, Path)
     request, end = asked(damping), str(path or ".xml").lower()
-    own = end.endswith((".xml", ".mjcf"))
-    engine = engine or "MuJoCo" * (own and path is not None)
+    engine = engine or "MuJoCo" * (end.endswith(MJCF) and path is not None)
     highest = max(mode, 1 if request.in_hz else int(max(request.at)))
     if step is None:
         count = count or fewest(make, least, highest, error)
         steps = steps_of(engine, inf, bool(request.ratios[0]))[0] if engine else None
-        chain = damped(make(count), request, steps, drag=own)
+        chain = damped(make(count), request, steps, drag=end.endswith(MJCF))
         result = chain_result(chain := default_steps(chain, steps, mode, error) if steps else chain, mode, error)
     else:
         check_number("step", step, "s", above=0)
         if not engine:
             raise InputError("engine is missing: a step is of an engine, such as MuJoCo or Exudyn:RK44")
         plain = [make(n) for n in ([count] if count else _counts(make, least, highest, error))]
-        armatures = own or end.endswith((".json", ".csv"))
-        chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, own, armatures)
+        chosen, rows = _for_step(plain, request, steps_of(engine, step, True), mode, error, end)
         result, chain = chain_result(chosen.chain, mode, error), chosen.chain
         links, weights = ("", "the fewest that run ")[len(plain) > 1], ("without", "with the least")[chosen.beta > 0.0]
         why = f"{links}within {per_cent(error)} up to mode {mode}, {weights} armature."
@@ -124,18 +124,16 @@ def steps_of(engine: str, step: float, damped: bool) -> list[Steps]:
 
 
 def _for_step(
-    plain: list[RigidChain],
-    request: Asked,
-    integrators: list[Steps],
-    mode: int,
-    error: float,
-    drag: bool,
-    armatures: bool,
+    plain: list[RigidChain], request: Asked, integrators: list[Steps], mode: int, error: float, end: str
 ) -> tuple[Candidate, list[Candidate]]:
-    """(the candidate that is chosen, all of them) of chains without dashpots. Raises InputError with what would run."""
+    """(the candidate that is chosen, all of them) of chains without dashpots for a file that ends in `end`.
+
+    Raises InputError with what would run.
+    """
     rows, remedies, largest = list[Candidate](), list[str](), (0.0, "")
     for steps in integrators:
-        found = trade([damped(one, request, steps, drag=drag) for one in plain], steps, modes=mode, armatures=armatures)
+        chains = [damped(one, request, steps, drag=end.endswith(MJCF)) for one in plain]
+        found = trade(chains, steps, modes=mode, armatures=end.endswith((*MJCF, ".json", ".csv")))
         rows += found
         if chosen := choose(found, mode, error):
             return chosen, rows
@@ -149,24 +147,27 @@ def _for_step(
                 other = [damped(one, request._replace(compensated=True), steps) for one in plain]
                 good = choose(trade(other, steps, modes=mode), mode, error)
                 remedies += ["compensated dashpots, damping '... compensated'"] * bool(good)
-    step, number, first, last = integrators[0].step, largest_mode(rows, error), rows[0], rows[-1]
-    span = " to ".join(str(n) for n in dict.fromkeys((plain[0].count, plain[-1].count)))
-    named = ", ".join(f"{one.engine} {one.integrator}" for one in integrators)
+    remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
+    remedies += ["hinges in one plane"] * (plain[0].in_space and plain[0].straight)
+    if number := largest_mode(rows, error):
+        remedies.insert(0, f"mode {number}")
+    text = _diverges(rows[0], rows[-1], integrators, mode, error)
+    raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
+
+
+def _diverges(first: Candidate, last: Candidate, integrators: list[Steps], mode: int, error: float) -> str:
+    """Why no chain of a range, from its first and its last one, runs within the error."""
+    step, named = integrators[0].step, ", ".join(f"{one.engine} {one.integrator}" for one in integrators)
+    span = " to ".join(str(n) for n in dict.fromkeys((first.chain.count, last.chain.count)))
     text = f"step = {with_unit(step, 's', '.6g')}: in {named} no chain of {span} links runs within {per_cent(error)} "
     text += f"up to mode {mode}"
     if not first.stable:
-        text += f", {first.links} links {'diverge' if step > first.limit else 'nearly diverge'} "
+        text += f", {first.chain.count} links {'diverge' if step > first.limit else 'nearly diverge'} "
         text += f"(omega_max h = {first.omega_max * step:.3g}, limit {first.omega_max * first.limit:.3g})"
     if last.stable and len(last.space) >= mode:
         errors = f"frequency {100.0 * last.error[-1]:+.2g} %, damping {100.0 * last.numerical[-1]:+.2g} % off"
-        text += f", {last.links} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
-    remedies += [f"a step of {with_unit(largest[0], 's')} in {largest[1]}"] * bool(largest[0])
-    remedies = (
-        [f"mode {number}"] * bool(number)
-        + remedies
-        + ["hinges in one plane"] * (first.chain.in_space and first.chain.straight)
-    )
-    raise InputError(f"{text}: give {' or '.join(remedies or ['more links'])}")
+        text += f", {last.chain.count} in {last.chain.steps.integrator if last.chain.steps else ''} have {errors}"
+    return text
 
 
 def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: float) -> Table:
@@ -176,7 +177,7 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
     columns += [Column(name, format="+.2g", percent=True) for name in ("space", "time", "error", "damping added")]
     columns += [Column("it")]
     each = list[tuple[object, ...]]()
-    for one in (row for row in rows if abs(row.links - chosen.links) <= 2 and len(row.space) >= mode):
+    for one in (row for row in rows if abs(row.chain.count - chosen.chain.count) <= 2 and len(row.space) >= mode):
         assert one.chain.steps
         fate = "diverges" if one.chain.steps.step > one.limit else "nearly diverges"
         fate = f"is beyond {per_cent(error)}" if one.stable else fate
@@ -184,7 +185,7 @@ def _trade_table(rows: list[Candidate], chosen: Candidate, mode: int, error: flo
         figures = (float(values[mode - 1]) for values in (one.space, one.time, one.error, one.numerical))
         limit = one.limit if isfinite(one.limit) else None
         shown = [value if isfinite(value) and one.stable else None for value in figures]
-        each.append((one.links, one.chain.steps.integrator, one.beta or None, limit, *shown, fate))
+        each.append((one.chain.count, one.chain.steps.integrator, one.beta or None, limit, *shown, fate))
     axis = chosen.chain.motions[0]
     note = f"Errors of frequency and damping ratio at mode {mode} in {axis}; small vibration about rest."
     return Table("Links for the step", columns, each, [note])
@@ -214,9 +215,8 @@ def chain_result(chain: RigidChain, mode: int, error: float) -> Result:
         others["mass on chords"] = chain.on_chords
     columns = [Column("axis"), Column("mode"), Column("exact", "Hz", ".7g"), Column("this chain", "Hz", ".7g")]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", *others)]
-    rows, margins = list[tuple[object, ...]](), list[Margin]()
-    if chain.straight:
-        margins += beam_margins(SolutionCache(chain.beam), (), mode=mode)
+    rows = list[tuple[object, ...]]()
+    margins = [*beam_margins(SolutionCache(chain.beam), (), mode=mode)] if chain.straight else []
     for axis in chain.motions:
         hertz, errors = chain.frequencies_hz(axis, mode).tolist(), chain.errors(axis, mode).tolist()
         if len(hertz) < mode:
@@ -224,10 +224,9 @@ def chain_result(chain: RigidChain, mode: int, error: float) -> Result:
         every = [[*other.errors(axis, mode).tolist(), *[None] * mode][:mode] for other in others.values()]
         exact = chain.exact_hz(axis, mode).tolist()
         rows += zip([axis] * mode, range(1, mode + 1), exact, hertz, errors, *every, strict=True)
-        size, worst = max((abs(one), i) for i, one in enumerate(errors, start=1))
+        size, worst = max((abs(one), f"at mode {i}") for i, one in enumerate(errors, start=1))
         name, enough = f"discretisation of {n} links in {axis}", f"{n} links are enough in {axis}"
-        where, remedy = f"at mode {worst}", "give more links"
-        margins.append(Margin(name=name, size=size, where=where, remedy=remedy, condition=enough))
+        margins.append(Margin(name=name, size=size, where=worst, remedy="give more links", condition=enough))
     rule = f", {wall_label(chain.wall)}" if held else ""
     rule += f", for {with_unit(chain.steps.step, 's')} in {' '.join(chain.steps[1:])}" if chain.steps else ""
     warnings = ["joint 0 is at the right end of the beam, which has the stronger support"] * chain.mirrored

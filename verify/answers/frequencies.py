@@ -11,7 +11,7 @@ from verify.blas import one_blas_thread
 from verify.compare.compare import Options
 from verify.compare.compare import compare as compare_list
 from verify.compare.reading import UNITS, FrequencyList, ModeShapes, listed, read_frequencies
-from verify.compare.record import as_list, read_record, with_record
+from verify.compare.record import as_list, listed_modes, read_record, with_record
 from verify.compare.shapes import compare_shapes, read_mesh
 from verify.identify.ring_down import ring_down
 from verify.io.mode_files import is_mesh
@@ -59,8 +59,9 @@ def compare_frequencies(
             return compare_shapes(scene, read_mesh(path, scene.beam.length), options)
         if str(path) != "-" and (record := read_record(path)):
             ring = ring_down(record.times, record.signals)
-            found = compare_list(scene, as_list(ring, f"record {str(path)!r}"), shapes, options, progress)
-            return with_record(found, ring, record, scene.beam)
+            modes = listed_modes(ring, scene.beam)
+            found = compare_list(scene, as_list(modes, f"record {str(path)!r}"), shapes, options, progress)
+            return with_record(found, ring, modes, record, scene.beam)
         given = read_frequencies(path, unit)
     elif isinstance(frequencies, FrequencyList):
         given = frequencies

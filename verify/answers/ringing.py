@@ -51,7 +51,8 @@ def with_run(result: Result, path: Path, within: float) -> Result:
     if not (modes := result.data["run"].get("modes")):
         raise InputError(f"file {str(path)!r}: a record is compared with a run, give --engine and --step")
     ring = ring_down(record.times, record.signals)
-    pairs = _pairs(ring.modes, modes)
+    tones = ring.tones([run["simulated_hz"] for run in modes if isfinite(run["simulated_hz"]) and run["simulated_hz"]])
+    pairs = _pairs([mode for mode in ring.modes if mode not in tones], modes)
     columns = [Column("entry"), Column("mode"), Column("measured", "Hz", ".6g"), Column("±", "Hz", ".2g")]
     columns += [Column("as it runs", "Hz", ".6g"), Column("exact beam", "Hz", ".6g")]
     formats = {"off": "+.2g", "damping": ".4g", "±": ".2g", "as it runs": ".3g", "added": ".3g"}
@@ -61,6 +62,7 @@ def with_run(result: Result, path: Path, within: float) -> Result:
         one, (hz, zeta) = pairs.get(mode), mode.halves
         run = one.run if one else {}
         name = run["mode"] if run.get("axis") == "bending" else f"{run['mode']} in {run['axis']}" if run else None
+        name = "tone" if mode in tones else name
         first = (entry, name, mode.hz, hz, run.get("simulated_hz"), run.get("meant_hz"), one and one.off)
         rows.append((*first, mode.zeta, zeta, run.get("simulated_damping"), run.get("added")))
     margin, text = _verdict(ring.modes, [*pairs.values()], within)
@@ -79,19 +81,14 @@ def with_run(result: Result, path: Path, within: float) -> Result:
     )
 
 
-def _pole(hz: float, zeta: float) -> complex:
-    """A pole over 2 pi of damped frequency and damping ratio."""
-    return complex(-zeta * hz / (1.0 - zeta**2) ** 0.5, hz)
-
-
 def _pairs(ring: Sequence[RingMode], modes: list[dict[str, Any]]) -> dict[RingMode, Pair]:
     """Modes of a record with those of the run whose poles are nearest, each used once, up to ALIKE."""
     close = list[tuple[float, int, int]]()
     for k, run in enumerate(modes):
         hz, zeta = run["simulated_hz"], run["simulated_damping"]
         if isfinite(hz) and hz > 0.0 and abs(zeta) < 1.0:
-            pole = _pole(hz, zeta)
-            close += [(abs(_pole(one.hz, one.zeta) - pole) / abs(pole), i, k) for i, one in enumerate(ring)]
+            pole = complex(-zeta * hz / (1.0 - zeta**2) ** 0.5, hz)
+            close += [(abs(one.pole - pole) / abs(pole), i, k) for i, one in enumerate(ring)]
     found, used = dict[int, Pair](), set[int]()
     for distance, i, k in sorted(close):
         if distance <= ALIKE and i not in found and k not in used:

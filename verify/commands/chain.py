@@ -86,14 +86,12 @@ def chain(
     value for all by --set EI=0.02, or --section (see docs/engines.md). It is clamped at the first point, free at the
     last. Without --count its links run from point to point, with --step they are the fewest that run.
     """
-    brief, shared = not any(formats.values()), dict[str, Any](mode=mode, error=relative_error(error), in_space=in_space)
-    shared |= {"damping": damping, "engine": engine, "path": path}
-    shared |= {"step": None if time_step is None else typed(time_step, Seconds, "step")}
+    brief, step = not any(formats.values()), None if time_step is None else typed(time_step, Seconds, "step")
+    shared: dict[str, Any] = {"mode": mode, "error": relative_error(error), "in_space": in_space}
+    shared |= {"damping": damping, "engine": engine, "path": path, "step": step}
     if scene.lower().endswith(".csv"):
         if wall != DEFAULT.wall:
-            raise InputError(
-                "--wall is of a straight beam, leave it out: a curve has the best one that its links allow"
-            )
+            raise InputError("--wall is of a straight beam, leave it out: a curve has the best that its links allow")
         result = curve_chain(scene, count, section=section, overrides=overrides, **shared)
     elif section:
         raise InputError("--section is of a curve, curve.csv, leave it out")
@@ -107,18 +105,11 @@ def chain(
 
 
 def judge_chain(
-    words: list[str],
-    overrides: tuple[str, ...],
-    modes: int,
-    within: str,
-    theory: str | None,
-    corrected: str | None,
-    formats: dict[str, Any],
-    run: dict[str, Any],
+    words: list[str], overrides: tuple[str, ...], within: str, formats: dict[str, Any], options: dict[str, Any]
 ) -> None:
     """Print what `verify compare [SCENE] FILE [RECORD]` finds in a chain of rigid bodies and in a record of its run.
 
-    Exit status 1 where it fails.
+    `options`: as of `judge_file`. Exit status 1 where it fails.
     """
     files = [Path(word) for word in words if Path(word).suffix.lower() in CHAINS]
     records = [Path(word) for word in words if Path(word).suffix.lower() in RECORDS]
@@ -126,14 +117,12 @@ def judge_chain(
     if len(files) > 1 or len(others) > 1 or len(records) > 1:
         raise InputError(f"{' '.join(words)}: give one file, with one scene or none, one record or none")
     beam = load_beam(others[0], overrides).beam if others else None
-    out = Path(corrected) if corrected else None
-    result = judge_file(files[0], beam, modes, relative_error(within), theory, out, **run)
+    result = judge_file(files[0], beam, within=relative_error(within), **options)
     if records:
         result = with_run(result, records[0], relative_error(within))
     if not any(formats.values()):
-        result = replace(
-            result, tables=[_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
-        )
+        tables = [_shortened(one) if one.title.startswith("Joints") else one for one in result.tables]
+        result = replace(result, tables=tables)
     show(result, **formats)
 
 
@@ -141,8 +130,7 @@ def _shortened(table: Table) -> Table:
     """The first rows and the last, and a row with what those in between have in common."""
     rows = [(str(row[0]), *row[1:]) for row in table.rows]
     inner = list(zip(*rows[FIRST:-1], strict=True))[1:]
-    alike = [
-        values[0] if len({f"{v:.9g}" if isinstance(v, float) else v for v in values}) == 1 else None for values in inner
-    ]
+    different = [{f"{v:.9g}" if isinstance(v, float) else v for v in values} for values in inner]
+    alike = [values[0] if len(each) == 1 else None for values, each in zip(inner, different, strict=True)]
     between = [(f"{FIRST} to {len(rows) - 2}", *alike)] if len(rows) > FIRST + 2 else rows[FIRST:-1]
     return replace(table, rows=[*rows[:FIRST], *between, *rows[-1:]] if len(rows) > FIRST else rows)

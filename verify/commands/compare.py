@@ -79,8 +79,10 @@ def compare(
     if any(Path(word).suffix.lower() in shared.CHAINS for word in (scene, *words)):
         from verify.commands.chain import judge_chain  # and the engines
 
-        run = {"engine": engine, "step": None if time_step is None else typed(time_step, shared.Seconds, "step")}
-        return judge_chain([scene, *words], overrides, mode or 3, within, theory, corrected, formats, run)
+        step = None if time_step is None else typed(time_step, shared.Seconds, "step")
+        options: dict[str, Any] = {"modes": mode or 3, "theory": theory, "engine": engine, "step": step}
+        options |= {"corrected": Path(corrected) if corrected else None}
+        return judge_chain([scene, *words], overrides, within, formats, options)
     if drive is not None:
         return _steady(scene, words, overrides, drive, places, within, formats)
     if places:
@@ -100,18 +102,9 @@ def compare(
     elif frequencies is None and len(words) > 1:
         raise InputError(f"frequencies = {' '.join(words)}: give one file, or numbers alone")
     with shared.progress(quiet=True in formats.values(), lines=count is None) as step:
-        result = compare_frequencies(
-            loaded,
-            frequencies or Path(words[0]),
-            unit=unit,
-            shapes=forms,
-            count=count,
-            kind=kind,
-            mode=mode,
-            within=limit,
-            theory=theory,
-            progress=step,
-        )
+        options = {"unit": unit, "count": count, "kind": kind, "mode": mode, "theory": theory}
+        words_or_file = frequencies or Path(words[0])
+        result = compare_frequencies(loaded, words_or_file, shapes=forms, within=limit, progress=step, **options)
     shared.show(result, **formats)
 
 
@@ -141,10 +134,8 @@ def _steady(
 
     if len(words) != 1:
         raise click.UsageError("Give one record to --drive.")
-    hz, at = (
-        None if drive == "scene" else typed(drive, shared.Hertz, "drive"),
-        [typed(x, shared.Metres, "at") for x in places],
-    )
+    hz = None if drive == "scene" else typed(drive, shared.Hertz, "drive")
+    at = [typed(x, shared.Metres, "at") for x in places]
     limit = typed(within, Relative, "within")
     result = compare_steady(load_scene(scene, overrides, {"drive"}), Path(words[0]), hz, at, limit)
     shared.show(result, **formats)

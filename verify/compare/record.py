@@ -1,6 +1,7 @@
 """Records of free vibration: a table of numbers with a time column, which is how it differs from a list."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -23,6 +24,8 @@ TIMED = re.compile(rf"(?im)^[#%!\s\"]*(?:{TIME.pattern})(?![^\W\d_])")
 SECONDS = {"us": 1e-6, "µs": 1e-6, "ms": 1e-3, "min": 60.0}
 """Seconds in a unit that the header of times names; otherwise seconds."""
 COLOURED = "the residuals of the record are not white: more modes or nonlinear, its intervals too short"
+TONES = "harmonics, sums or differences of stronger ones, of a vibration that is not small"
+HEAVY = "damped too heavily beside what is left of the signals"
 EMPTY = re.compile(r"(?<=[,;\t])[ ]*(?=[,;\t]|$)")
 """A cell without a value in a row of numbers."""
 DIGITS, ROUNDED = 10, 0.75
@@ -101,7 +104,7 @@ def _cleaned(table: Array, names: list[str], unit: float, source: str) -> Record
         raise InputError(f"{source} has {len(table) * bool(names)} rows with values: give {FEWEST} or more")
     times = table[:, 0]
     if len(back := np.flatnonzero(np.diff(times) <= 0.0)):
-        k, remedy = int(back[0]) + 1, "give ascending times, of one run alone"
+        k, remedy = int(back[0]) + 1, "give ascending times of one run; MuJoCo restarts one that diverges"
         raise InputError(f"{source}, row {place[k] + 1}: time {times[k]:.9g} after {times[k - 1]:.9g}: {remedy}")
     even, digit = np.polynomial.Polynomial.fit(place, times, 1)(place), _last_digit(times)
     if 1e-6 * digit < abs(even - times).max() <= ROUNDED * digit:
@@ -115,20 +118,29 @@ def _last_digit(times: Array) -> float:
     return next((digit for digit, one in scaled if abs(one - np.round(one)).max() < 1e-6), 0.0)
 
 
-def as_list(ring: RingDown, source: str) -> FrequencyList:
-    """The undamped frequencies of a record, with their 95 % intervals as digits."""
-    hertz = np.array([mode.undamped_hz for mode in _resolved(ring)])
-    widths = np.array([mode.hz_interval[1] - mode.hz_interval[0] for mode in _resolved(ring)])
+def as_list(modes: Sequence[RingMode], source: str) -> FrequencyList:
+    """The undamped frequencies of modes of a record, with their 95 % intervals as digits."""
+    hertz = np.array([mode.undamped_hz for mode in modes])
+    widths = np.array([mode.hz_interval[1] - mode.hz_interval[0] for mode in modes])
     return FrequencyList(source=source, values=hertz, digits=np.maximum(widths / hertz, 1e-12), declared=True)
 
 
-def _resolved(ring: RingDown) -> list[RingMode]:
-    """Modes but those that decay so fast that what else is in the residuals moves them, where it is not white."""
-    light = [mode for mode in ring.modes if ring.white or abs(mode.zeta) < DAMPED]
+def listed_modes(ring: RingDown, beam: Beam) -> list[RingMode]:
+    """Modes but tones, and those that decay so fast that what else is in the residuals moves them, where not white."""
+    tones = ring.tones(_exact(beam))
+    light = [mode for mode in ring.modes if mode not in tones and (ring.white or abs(mode.zeta) < DAMPED)]
     return light or [*ring.modes]
 
 
-def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | None = None) -> Result:
+def _exact(beam: Beam) -> list[float]:
+    """Frequencies of the exact beam, Hz; none where it has no model of it."""
+    try:
+        return list[float](frequencies_hz(Candidate(model=EXACT), beam, None, ALIASES).tolist())
+    except InputError:
+        return []
+
+
+def with_record(result: Result, ring: RingDown, listed: Sequence[RingMode], record: Record, beam: Beam) -> Result:
     """A comparison of a list with the modes of the record that it is from, and what its sampling hides of a beam."""
     columns = [Column("entry"), Column("damped f", "Hz", ".7g"), Column("± (95 %)", "Hz", ".2g")]
     columns += [
@@ -140,16 +152,18 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     def row(number: int, mode: RingMode) -> tuple[object, ...]:
         return number, mode.hz, mode.halves[0], mode.zeta, mode.halves[1], *mode.amplitude
 
-    listed = _resolved(ring)
     rows = [row(number, mode) for number, mode in enumerate(listed, start=1)]
     used = record.times[record.times >= ring.start]
     span = f"{len(used)} samples over {used[-1] - used[0]:.4g} s, noise {ring.noise:.2g}"
     notes = [f"Least squares over {span}, with offset and drift. Listed above: undamped frequencies.", *record.notes]
     if len(used) < len(record.times):
         notes.append(f"Free vibration from {ring.start:.4g} s on; what is before, as the rise of a load, is left out.")
-    if lost := [f"{mode.hz:.4g} Hz at {per_cent(mode.zeta)}" for mode in ring.modes if mode not in listed]:
-        notes.append(f"Left out, as damped too heavily beside what is left of the signals: {', '.join(lost)}.")
-    unseen, warnings = _unseen(ring, beam) if beam else ([], [])
+    tones = ring.tones(exact := _exact(beam))
+    for text, tonal in ((TONES, True), (HEAVY, False)):
+        lost = [one for one in ring.modes if one not in listed and (one in tones) == tonal]
+        names = ", ".join(f"{mode.hz:.4g} Hz at {per_cent(mode.zeta)}" for mode in lost)
+        notes += [f"Left out, as {text}: {names}."] * bool(lost)
+    unseen, warnings = _unseen(ring, exact)
     notes, warnings = [*notes, *unseen], [*result.warnings, *warnings]
     warnings += [COLOURED] * (not ring.white)
     if len(ring.modes) == 1 and abs(ring.modes[0].zeta) < STEADY:
@@ -159,13 +173,9 @@ def with_record(result: Result, ring: RingDown, record: Record, beam: Beam | Non
     return replace(result, tables=tables, warnings=warnings, data=dict(result.data) | {"record": modes})
 
 
-def _unseen(ring: RingDown, beam: Beam) -> tuple[list[str], list[str]]:
+def _unseen(ring: RingDown, exact: list[float]) -> tuple[list[str], list[str]]:
     """(notes, warnings) on modes of a beam above half the sampling rate, which appear at lower frequencies."""
     rate = ring.rate
-    try:
-        exact = frequencies_hz(Candidate(model=EXACT), beam, None, ALIASES).tolist()
-    except InputError:
-        return [], []
     fast = [(mode, hz) for mode, hz in enumerate(exact, start=1) if hz > 0.5 * rate]
     if not fast or fast[0][0] > len(ring.modes) + 1:
         return [], []

@@ -78,9 +78,9 @@ def _checked(fit: Rayleigh, omega: Array, within: float, drag: bool) -> Rayleigh
     worst = int(abs(fit.deviation).argmax())
     if abs(fit.deviation[worst]) <= within:
         return fit
-    means, more = (
-        ("drag and dashpots", "") if drag else ("dashpots alone", "choose MuJoCo in a plane, which has drag, ")
-    )
+    means, more = "drag and dashpots", ""
+    if not drag:
+        means, more = "dashpots alone", "choose MuJoCo in a plane, which has drag, "
     raise InputError(
         f"damping: by {means} the ratio at {omega[worst] / (2.0 * np.pi):.4g} Hz deviates by "
         f"{100.0 * fit.deviation[worst]:+.3g} %: {more}"
@@ -141,11 +141,6 @@ class Candidate(NamedTuple):
     numerical: Array
     worst: Array
 
-    @property
-    def links(self) -> int:
-        """N."""
-        return self.chain.count
-
 
 def with_armature(chain: RigidChain, inertias: Array, remark: str) -> RigidChain:
     """The chain with inertias, (n,), kg m^2, on the hinges about one axis, in the order of its unknowns."""
@@ -205,7 +200,7 @@ def step_errors(chain: RigidChain, steps: Steps, axis: Axis, modes: int) -> tupl
 def choose(candidates: Sequence[Candidate], mode: int, within: float) -> Candidate | None:
     """The stable candidate of fewest links, then of least armature, with errors `within` up to a mode, if one has."""
     good = [one for one in candidates if len(one.worst) >= mode and one.worst[mode - 1] <= within]
-    return min(good, key=lambda one: (one.links, one.beta), default=None)
+    return min(good, key=lambda one: (one.chain.count, one.beta), default=None)
 
 
 def largest_mode(candidates: Sequence[Candidate], within: float) -> int:
@@ -218,9 +213,8 @@ def largest_step(chain: Simulated, mode: int, within: float) -> float:
 
     Of frequency, relative, and of the damping ratio.
     """
-    return min(
-        0.5 * chain.limit, *(chain.step_for(chain.rigid + mode, 0.5 * within, damping=one) for one in (False, True))
-    )
+    number, error = chain.rigid + mode, 0.5 * within
+    return min(0.5 * chain.limit, chain.step_for(number, error), chain.step_for(number, error, damping=True))
 
 
 def default_steps(chain: RigidChain, steps: Steps | None = None, mode: int = 3, within: float = 0.01) -> RigidChain:

@@ -17,6 +17,7 @@ from verify.engines.description import AXES, Hinge, Joint
 from verify.engines.line import STRAIGHT, Line
 from verify.engines.meant_rod import UNEVEN, along_curve, law_of_masses, length_errors, meant_rod
 from verify.engines.rules import ADAPTED, MORE, SERIES, WEIGHTS, Judged, at_wall, half_links, weights_of
+from verify.engines.running import gravity_margin
 from verify.engines.stiffness_law import ALIKE, SCENE, Law
 from verify.errors import InputError, shown
 from verify.formatting import with_unit
@@ -48,9 +49,8 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
     meant = curved_chain(*meant_rod(lines, laws, masses))
     links += links_off(lines, meant, errors)
     each = list(zip(lines, rules, laws, strict=True))
-    odd = {
-        line.joints[j]: float((law.joints / half / weights_of(rule, n))[j]) for line, rule, law in each for j in law.odd
-    }
+    springs = [law.joints / half / weights_of(rule, n) for rule, law in zip(rules, laws, strict=True)]
+    odd = {line.joints[j]: float(k[j]) for (line, _, law), k in zip(each, springs, strict=True) for j in law.odd}
     walls = [_wall(line, rule, meant, errors, bool(odd)) for line, rule, _ in each]
     texts = list[str]()
     for (line, rule, law), (_, right) in zip(each, walls, strict=True):
@@ -65,9 +65,11 @@ def judge_rod(lines: list[Line], name: str) -> list[Judged]:
         off = with_unit(float(np.hypot(*np.transpose([link.off for link in meant.links])).max()), "m")
         remedy = f"shift centres of mass off the chords by up to {off}, to those of the curve between joints"
     present, correct = (_chain(lines, each, meant) for each in ([k.springs for k in lines], [k for k, _ in walls]))
+    means = (law.kind + ", {:.6g} to {:.6g} N m2" if np.ptp(law.joints) else "= {:.6g} N m2" for law in laws)
+    texts = [text.format(*law.joints[[0, -1]]) for text, law in zip(means, laws, strict=True)]
     return [
-        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], odd, law.means, remedy)
-        for (line, rule, law), (k, _) in zip(each, walls, strict=True)
+        Judged(line, present, correct, rule, float(law.joints[0]), k, faults, links, [], odd, text, remedy)
+        for (line, rule, law), (k, _), text in zip(each, walls, texts, strict=True)
     ]
 
 
@@ -132,7 +134,4 @@ def rod_under_gravity(judged: list[Judged], _: Any, gravity: Array, within: floa
     speeds, springs = chain.speeds[0], np.diag(chain.matrices()[1])
     angles = np.einsum("m,min,i->n", chain.bodies[0], speeds, gravity) / springs
     sag = float(np.linalg.norm(speeds @ angles, axis=1).max()) / chain.beam.length
-    text = f"not judged under gravity: its weight bends it by {sag:.2g} of its length (linear theory)"
-    remedy = "set gravity to zero for the frequencies without it"
-    words: dict[str, Any] = {"name": "gravity", "failure": text, "remedy": remedy, "harm": "premise"}
-    return [Margin(size=sag, fine=within, limit=within, **words)] if sag > within else []
+    return gravity_margin(sag, f"its weight bends it by {sag:.2g} of its length (linear theory)", within)

@@ -84,9 +84,8 @@ def judge_file(
     axes = planes(found, beam)
     found = [line._replace(axis=axis) for line, axis in zip(found, axes, strict=True)]
     judged = judge_rod(every, path.name) if rod else _judged(found, every[len(found) :], beam, theory)
-    setting = (
-        setting._replace(note="; ".join(filter(None, [DRAG, setting.note]))) if rod and setting.viscosity else setting
-    )
+    if rod and setting.viscosity:
+        setting = setting._replace(note="; ".join(filter(None, [DRAG, setting.note])))
     lone = every[len(judged) :]
     columns = [Column("axis"), Column("mode"), *(Column(name, "Hz", ".7g") for name in ("exact", "file"))]
     columns += [Column(name, format="+.3g", percent=True) for name in ("error", "corrected")]
@@ -98,7 +97,7 @@ def judge_file(
     ran = run([judged[0].present] if rod else [*(one.line for one in judged), *lone])
     units = unit_margins(beam or judged[0].correct.beam)
     others = [*units, *ran.margins, *(rod_under_gravity if rod else under_gravity)(judged, solids, gravity, within)]
-    notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts."] * rod
+    notes = ["Exact is the rod of the joints, estimated by links in 2 and 4 parts, of long chains in 1 and 2."] * rod
     tables = [Table("Frequencies", columns, rows, notes), *ran.tables, *map(_joints, judged)]
     warnings = [text for one in judged for text in one.advice]
     clashes, changes = [*contradictions(found, axes, beam), *lost_angles(every)], _changes(judged)
@@ -241,9 +240,8 @@ def _write(path: Path, kind: str, solids: list[Solid], new: dict[str, float], ou
         behind = any("joint" in names[names.index("body") :] for names in bodies if "body" in names)
         alike = len(tags) == len(compiled) and not behind and b"springdamper" not in text  # it overrides stiffness
         for found, (joint, present) in zip(tags, compiled.items(), strict=False):
-            named, own = (
-                re.search(rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)", found[0]) for word in (b"name", b"stiffness")
-            )
+            each = (rb"\s" + word + rb"\s*=\s*[\"']\s*([^\"'\s]*)" for word in (b"name", b"stiffness"))
+            named, own = (re.search(one, found[0]) for one in each)
             alike &= not named or named[1].decode() == joint
             alike &= not own or abs(float(own[1]) - present) <= 1e-9 * abs(present)
             place = (found.start() + own.start(1), found.start() + own.end(1)) if own else (found.start() + 6,) * 2

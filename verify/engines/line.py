@@ -151,9 +151,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         if not any(move.stiffness for moves in own for move in moves):
             if curved and any(own):  # free about this axis, all axes vibrate together
                 joint = next(moves[0].joint for moves in own if moves)
-                raise InputError(
-                    f"{name}: joint {shown(joint)} and all others like it have no stiffness, give them one"
-                )
+                raise InputError(f"{name}: joint {shown(joint)} and all others like it have no stiffness, give one")
             continue
         for j, moves in enumerate(own[1:], 1):
             if len(moves) > 1 or (axis != "torsion" and not (moves and moves[0].stiffness)):
@@ -163,15 +161,11 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         springs = np.array([moves[0].stiffness if moves else np.nan for moves in own])
         links = [lengths, masses, centre, np.einsum("ni,nij,nj->n", about, inertias, about)]
         joints = [moves[0].joint if moves else "" for moves in own]
-        dashpots, armatures = (
-            np.array([getattr(moves[0], of) if moves else 0.0 for moves in own]) for of in ("damping", "armature")
-        )
+        dashpots = np.array([moves[0].damping if moves else 0.0 for moves in own])
+        armatures = np.array([moves[0].armature if moves else 0.0 for moves in own])
         ball = any(one.joint == other.joint for moves, _ in parts for one, other in itertools.pairwise(moves))
-        seen = (
-            _direction(about[0]),
-            _direction(np.cross(directions[0], about[0])),
-            _deep(mains, directions, about, solid),
-        )
+        across = np.cross(directions, about)
+        seen = _direction(about[0]), _direction(across[0]), _deep(mains, directions, across, solid)
         hinges = np.array([moves[0].axis if moves else e for moves, e in zip(own, about, strict=True)])
         curve = Curve(ends, directions, bodies, hinges, curved)
         found.append(Line(axis, joints, springs, np.stack(links, 1), solid, *seen, ball, dashpots, armatures, curve))
@@ -195,9 +189,7 @@ def _axes(parts: list[tuple[list[Move], list[Solid]]], directions: Array, name: 
     near = [abs(found[j] @ one.axis).max() if found else abs(before[j] @ one.axis) for j, one in hinges]
     if not found or min(near) < 1.0 - (BOW if curved else STRAIGHT):
         joint, angle = hinges[int(np.argmin(near))][1].joint, np.degrees(np.arccos(min(near)))
-        text = (
-            f"its hinges are not about or across its own axis, at right angles ({shown(joint)} by {angle:.2g} degrees)"
-        )
+        text = f"its hinges are not about or across its axis at right angles, {shown(joint)} by {angle:.2g} degrees"
         raise InputError(f"{name}: {text}, turn them, or give the bodies the angles of a curve")
     return list(np.array(found).transpose(1, 0, 2))
 
@@ -207,9 +199,8 @@ def _direction(about: Array) -> str:
     return " ".join(f"{one:.3g}" for one in np.round(about if about.sum() > 0.0 else -about, 6) + 0.0)
 
 
-def _deep(mains: list[Solid], directions: Array, about: Array, solid: bool) -> tuple[float, float]:
+def _deep(mains: list[Solid], directions: Array, across: Array, solid: bool) -> tuple[float, float]:
     """(b/a)^2 of a section of depth b across the hinges and a along them, by what is drawn and by inertias, or NaN."""
-    across = np.cross(directions, about)
     rows = list(zip(mains, directions, np.cross(across, directions), across, strict=True))
     drawn = [(d @ one.shape @ d, a @ one.shape @ a) for one, _, a, d in rows if one.shape.any()]
     spins = [[d @ one.inertia @ d for d in each] for one, *each in rows]

@@ -97,9 +97,8 @@ def meant_rod(lines: list[Line], laws: Sequence[Law], density: Law) -> tuple[Rod
         return np.repeat(levels[np.searchsorted(steps, middle)], 2)
 
     spins = np.ones(len(directions)) if plane else np.einsum("ni,nij,nj->n", directions, inertias, directions) / lengths
-    each = [
-        between(law.joints) if law.kind == "smooth" else stepped(law, x) for law, x in zip(laws, steps, strict=True)
-    ]
+    pairs = zip(laws, steps, strict=True)
+    each = [between(law.joints) if law.kind == "smooth" else stepped(law, x) for law, x in pairs]
     about = dict(zip((line.axis for line in lines), each, strict=True))
     ei, ei2 = each[0], each[1 if len(each) > 1 else 0]
     mass = stepped(density, heavier) if len(heavier) else at(_at_ends(density.joints))

@@ -113,9 +113,8 @@ def _check(solids: list[Solid]) -> None:
         if not (0.0 <= one.mass < np.inf and np.isfinite(one.inertia).all() and np.isfinite(one.centre).all()):
             raise InputError(f"{shown(one.name)}: its mass or inertia is negative or no number, give kg and kg m^2")
         if (spin := np.linalg.eigvalsh(one.inertia))[0] < -SPIN * spin[-1]:
-            raise InputError(
-                f"{shown(one.name)}: its inertia has the principal value {spin[0]:.3g} kg m^2, give none below 0"
-            )
+            text = f"its inertia has the principal value {spin[0]:.3g} kg m^2, give none below 0"
+            raise InputError(f"{shown(one.name)}: {text}")
 
 
 def _compiled(path: Path, root: ElementTree.Element) -> Any:

@@ -196,9 +196,8 @@ def _table(path: Path) -> dict[str, Array]:
     table = dict[str, Array]()
     for name, head, cells in zip(names, heads, zip(*rows[1:], strict=True), strict=True):
         unit = head[2] if head and head[2] not in (None, UNITS[name]) else ""
-        table[name] = np.array(
-            [in_si(f"{one} {unit}", UNITS[name], f"{path.name}, row {i}: {name}") for i, one in enumerate(cells, 1)]
-        )
+        places = (f"{path.name}, row {i}: {name}" for i in range(1, len(rows)))
+        table[name] = np.array([in_si(f"{one} {unit}", UNITS[name], at) for one, at in zip(cells, places, strict=True)])
     return table
 
 
@@ -208,9 +207,7 @@ def _values(
 ) -> tuple[list[float], tuple[str, ...]]:
     """VALUES of a point by its columns: directly, or from sizes and material; the names of the latter. InputError."""
     given, made, sized = dict(row), dict[str, float](), tuple[str, ...]()
-    fields = dict(section) | {
-        MATERIAL.get(key, key): value for key, value in row if key in ALL_SIZES or key in MATERIAL
-    }
+    fields = dict(section) | {MATERIAL.get(key, key): x for key, x in row if key in ALL_SIZES or key in MATERIAL}
     if {"diameter", "wall_thickness"} & set(fields):
         fields["shape"] = "tube" if "wall_thickness" in fields else "round"
     needed = ("EI", "GJ", "rho_A", "rho_Ip") if space else ("EI", "rho_A")

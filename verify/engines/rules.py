@@ -103,9 +103,10 @@ def judge(line: Line, beam: Beam | None = None, theory: Any = "euler-bernoulli")
     advice = _advice(line, law, inside, steps, hinged if held and wall else None)
     right_ones = inside / weights_of(rule, n)
     names = {line.joints[j]: float(right_ones[j]) for j in (*law.odd, *steps) if meant is None}
-    text, faults = rule if support == "clamped" else f"{support} end", wall + odd + joints + links
+    means, faults = f"= {stiffness:.6g} N m2", wall + odd + joints + links
+    text = rule if support == "clamped" else f"{support} end"
     present, correct = (rigid(line, each, beam, rule, theory) for each in (k, springs))
-    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, written(stiffness))
+    return Judged(line, present, correct, text, stiffness, springs, faults, links, advice, names, means)
 
 
 def elastic_clamp(beam: Beam) -> float:
@@ -140,11 +141,6 @@ def rigid(line: Line, springs: Array, beam: Beam, rule: str, theory: Any = "rayl
     rows = zip(edges, line.links.tolist(), strict=False)
     links = tuple(Link(x, length, mass, centre, (own,) * 3) for x, (length, mass, centre, own) in rows)
     return RigidChain(beam, rule, tuple(map(Joint, edges, hinges)), links, theory=theory)
-
-
-def written(stiffness: float) -> str:
-    """EI or GJ in words."""
-    return f"= {stiffness:.6g} N m2"
 
 
 def half_links(soft: Array) -> Array:
@@ -251,10 +247,8 @@ def _meant(line: Line, expected: Array, support: Any, stiffness: Array) -> Beam:
     spots = np.stack([np.minimum(ends - lengths + x, ends[-1]), more, np.maximum(own, 0.0)], axis=1)[heavy].tolist()
     spin = float(np.median(inertias / (masses * lengths**2)) - 1 / 12) * expected[0] * lengths[0]
     starts = [0, *(1 + np.flatnonzero(np.diff(stiffness))).tolist(), len(ends)]
-    section = tuple(
-        Section(length=float(lengths[a:b].sum()), bending_stiffness=float(stiffness[a]))
-        for a, b in itertools.pairwise(starts)
-    )
+    sizes = [(float(lengths[a:b].sum()), float(stiffness[a])) for a, b in itertools.pairwise(starts)]
+    section = tuple(Section(length=length, bending_stiffness=ei) for length, ei in sizes)
     return Beam(
         length=float(ends[-1]),
         supports=(support, "free"),

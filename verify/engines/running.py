@@ -215,7 +215,11 @@ def under_gravity(judged: Sequence[Judged], solids: Sequence[Solid], gravity: Ar
         text = f"{'raises' if pull > 0.0 else 'lowers'} its first frequency by about {per_cent(change)}"
         text = text if change > -0.5 else "buckles it"
         found.append((abs(change), f"its weight along it, {abs(pull):.3g} EI/L^2, {text}"))
-    size, text = max(found)
+    return gravity_margin(*max(found), within)
+
+
+def gravity_margin(size: float, text: str, within: float) -> list[Margin]:
+    """The margin of a weight of relative effect `size`, none where that is `within`."""
     words: dict[str, Any] = {"name": "gravity", "failure": f"not judged under gravity: {text}"}
     words["remedy"] = "set gravity to zero for the frequencies without it"
     return [Margin(size=size, fine=within, limit=within, harm="premise", **words)] if size > within else []

@@ -30,12 +30,6 @@ class Law(NamedTuple):
     links: Array
     odd: list[int]
 
-    @property
-    def means(self) -> str:
-        """EI or GJ in words."""
-        ends = " to ".join(f"{x:.6g}" for x in self.joints[[0, -1]])
-        return f"{self.kind}, {ends} N m2" if np.ptp(self.joints) else f"= {self.joints[0]:.6g} N m2"
-
     def faults(self, names: list[str], ratios: Array) -> list[str]:
         """The joints off the law by name, of `ratios` times its EI, as one fault or none."""
         return named(f"joint{'s' * (len(self.odd) > 1)} off a {self.kind} EI:", names, ratios, self.odd)
@@ -75,9 +69,7 @@ def fitted_law(values: Array, places: Array, names: list[str], meant: float | No
     if len(runs) > 1 and len(lone) <= few + len(runs) - 1:
         done = np.searchsorted([b for _, b in runs], np.arange(n), side="right")
         before, ahead = levels[np.maximum(done - 1, 0)], levels[np.minimum(done, len(runs) - 1)]
-        for (_, b), (c, _), level in zip(
-            runs, runs[1:], levels, strict=False
-        ):  # up to the last joint of the run before
+        for (_, b), (c, _), level in zip(runs, runs[1:], levels, strict=False):  # up to the last one of the run before
             alike = [j for j in range(b, c) if abs(values[j] / level - 1.0) <= ALIKE]
             ahead[b : alike[-1] + 1 if alike else b] = level
         lone = [j for j in lone if abs(values[j] / ahead[j] - 1.0) > ALIKE]
@@ -94,9 +86,7 @@ def _smooth(values: Array, places: Array, first: int, few: int, names: list[str]
     if n <= 2 * RUN:
         text = f"the stiffness of its {len(values)} joints varies, too few to tell a law of it from a fault"
         raise InputError(f"{text}: give {2 * RUN + 4} links or more, or {SCENE}")
-    before, after = (
-        np.array([end, *inner, last]) for end, inner, last in ((1, range(n - 2), n - 2), (2, range(2, n), n - 3))
-    )
+    before, after = np.array([1, *range(n - 2), n - 2]), np.array([2, *range(2, n), n - 3])
     share = (x - x[before]) / (x[after] - x[before])
     while law.min() > 0.0:
         size = law[first:] ** 0.25

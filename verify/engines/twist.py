@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.line import Line
-from verify.engines.rules import Judged, rigid, written
+from verify.engines.rules import Judged, rigid
 from verify.engines.stiffness_law import ALIKE
 from verify.errors import InputError
 from verify.exact.torsion import shafts
@@ -54,4 +54,4 @@ def judge_twist(line: Line, beam: Beam | None) -> Judged | None:
     faults += [f"torsional stiffness {inner:.5g} times that of the beam"] * bool(abs(inner - 1.0) > ALIKE)
     links = [f"polar inertia {mass:.4g} times that of the beam"] * bool(abs(mass - 1.0) > UNEVEN)
     present, correct = (rigid(line, each, beam, "") for each in (k, springs))
-    return Judged(line, present, correct, rule, twist, springs, faults + links, links, [], {}, written(twist))
+    return Judged(line, present, correct, rule, twist, springs, faults + links, links, [], {}, f"= {twist:.6g} N m2")

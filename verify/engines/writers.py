@@ -24,9 +24,8 @@ MASSLESS = 1e-11
 LEAST = 2e-15, 2e-14
 """Its least mass, kg, and inertia, kg m^2, twice those that MuJoCo takes."""
 MODES = 3
-_MJCF_JOINT = (
-    '<joint name="{name}" type="{kind}" axis="{direction}" stiffness="{stiffness!r}" damping="{damping!r}"{more}/>'
-)
+_SPRING = 'stiffness="{stiffness!r}" damping="{damping!r}"'
+_MJCF_JOINT = f'<joint name="{{name}}" type="{{kind}}" axis="{{direction}}" {_SPRING}{{more}}/>'
 _MJCF_BODY = (
     '\n<inertial pos="{centre}" mass="{mass!r}" diaginertia="{inertia[0]!r} {inertia[1]!r} {inertia[2]!r}"/>'
     '<geom type="box" contype="0" conaffinity="0" pos="{middle!r} 0 0" size="{half}" rgba="{colour}"/>\n'
@@ -68,10 +67,8 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
     """
     parent, place, frame = "world", np.zeros(3), np.eye(3)
     for j, (joint, link) in enumerate(zip(chain.joints, chain.links, strict=False)):
-        moves = [
-            (f"joint{j}_{h.axis}", "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping, h.armature)
-            for h in joint.hinges
-        ]
+        at, hinges = f"joint{j}_", joint.hinges
+        moves = [(at + h.axis, "revolute", DIRECTIONS[h.axis], h.stiffness, h.damping, h.armature) for h in hinges]
         offset, halves = chain.rest(j)
         place, turn = place + frame @ offset, halves[0] @ halves[1]
         frame = frame @ turn
@@ -82,9 +79,8 @@ def tree(chain: RigidChain, in_parts: bool = False) -> Iterator[dict[str, Any]]:
         small = max(MASSLESS, LEAST[1] / min(link.inertia))
         for name, kind, direction, stiffness, damping, armature in moves:
             last = name == moves[-1][0]
-            body, share = (
-                (f"link{j}", 1.0 - small * in_parts * (len(moves) - 1)) if last else (f"link{j}_{name}", small)
-            )
+            whole = 1.0 - small * in_parts * (len(moves) - 1)
+            body, share = (f"link{j}", whole) if last else (f"link{j}_{name}", small)
             mass = link.mass if last else max(MASSLESS * link.mass, LEAST[0])
             still, about = (turn == np.eye(3)).all(), halves[1].T @ np.array(direction.split(), dtype=float)
             yield {
@@ -154,9 +150,8 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
     flags = f'<flag {flag}="disable"/>' if flag else ""
     bodies, begun = "", False
     for one in tree(chain):
-        turned = (
-            f' quat="{numbers(Rotation.from_matrix(one["turn"]).as_quat(scalar_first=True))}"' if one["turned"] else ""
-        )
+        quaternion = numbers(Rotation.from_matrix(one["turn"]).as_quat(scalar_first=True))
+        turned = f' quat="{quaternion}"' if one["turned"] else ""
         bodies += "" if begun else f'<body name="link{one["link"]}" pos="{one["offset"]}"{turned}>'
         more = f' armature="{one["armature"]!r}"' if one["armature"] else ""
         kind = "hinge" if one["kind"] == "revolute" else "slide"
@@ -176,9 +171,8 @@ def mjcf(chain: RigidChain, step: float | None = None) -> str:
         for row in chain.constraints(axis):
             closed = ' solver="PGS" jacobian="dense" iterations="20" tolerance="1e-14"'
             tendons += tendon(f"support_{axis}", axis, row)
-            equalities += (
-                f'<tendon tendon1="support_{axis}" solref="{2.0 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/>'
-            )
+            stiff = f'solref="{2.0 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"'
+            equalities += f'<tendon tendon1="support_{axis}" {stiff}/>'
     return (
         f"<mujoco>\n<!--\n{notes(chain)}\n-->\n"
         '<compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>\n'
@@ -266,10 +260,8 @@ def table(chain: RigidChain) -> Table:
 def data(chain: RigidChain) -> dict[str, object]:
     """The chain as data, SI, with its expected frequencies."""
     names = ("wall", "mirrored", "damping", "viscosity", "joints", "links", "springs", "remarks")
-    expected = {
-        axis: {"frequencies_hz": chain.frequencies_hz(axis, MODES), "error": chain.errors(axis, MODES)}
-        for axis in chain.motions
-    }
+    each = ((axis, chain.frequencies_hz(axis, MODES), chain.errors(axis, MODES)) for axis in chain.motions)
+    expected = {axis: {"frequencies_hz": hertz, "error": error} for axis, hertz, error in each}
     own = {name: getattr(chain, name) for name in names} | {"steps": chain.steps and chain.steps._asdict()}
     own |= {} if chain.straight else {"frames": [chain.rest(j) for j in range(chain.count)]}
     return {"supports": chain.beam.supports, "count": chain.count, **own, "expected": expected}

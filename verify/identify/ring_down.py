@@ -8,6 +8,7 @@ squares fit over all samples; modes are added while they lower Schwarz's criteri
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 from math import hypot, log, pi, sqrt
 
 import numpy as np
@@ -25,6 +26,8 @@ GAIN = 10.0  # Least fall of Schwarz's criterion by a mode: odds of 150 to 1
 FEWEST = 16  # Samples of the shortest record
 GROWTH = 100.0  # Exponent of a growth that the least squares may try: e^100 squared is still a number
 GRAIN = 1e-8  # Amplitude of a mode over the largest of its channel, below which it is one of rounding
+EXPECTED, SHIFT, LOOSE = 0.03, 3e-4, 0.01
+"""Relative distance of an expected frequency; of a tone from the sum of its poles, beyond the intervals and at most."""
 RELEASE, SWING, CLEARER, QUIET, BRIEF = 0.9, 0.3, 0.5, 1e-3, 0.2
 """Deflection of a beam that is released, over the largest before it swings back by SWING of the largest of all; noise
 without what is before, over that of all; noise over the range that no load leaves; damping ratio of modes that may be
@@ -52,6 +55,11 @@ class RingMode:
         """Frequency without damping."""
         return self.hz / float(np.sqrt(1.0 - self.zeta**2))
 
+    @property
+    def pole(self) -> complex:
+        """Of e^{2 pi pole t}, Hz."""
+        return complex(-self.zeta * self.undamped_hz, self.hz)
+
 
 @dataclass(frozen=True)
 class RingDown:
@@ -70,6 +78,24 @@ class RingDown:
     def hertz(self) -> Array:
         """Damped frequencies, (m,), Hz."""
         return np.array([mode.hz for mode in self.modes])
+
+    def tones(self, expected: Sequence[float]) -> list[RingMode]:
+        """Harmonics and combination tones of a nonlinear vibration: poles that two or three of stronger modes sum to.
+
+        `expected` frequencies, Hz, by the factor of the strongest mode, are none: those of pinned beams are sums, too.
+        """
+        found, poles = list[RingMode](), list[complex]()
+        strong = sorted(self.modes, key=lambda mode: max(mode.amplitude), reverse=True)
+        factor = min((strong[0].hz / hz for hz in expected), key=lambda ratio: abs(log(ratio)), default=1.0)
+        for mode in strong:
+            near = hypot(mode.halves[0], mode.halves[1] * mode.hz) + SHIFT * mode.hz
+            sums = (sum(some) for n in (2, 3) for some in combinations_with_replacement(poles, n))
+            known = any(abs(mode.hz / (factor * hz) - 1.0) < EXPECTED for hz in expected)
+            if not known and any(abs(mode.pole - one) < min(3.0 * near, LOOSE * mode.hz) for one in sums):
+                found.append(mode)
+            else:
+                poles += mode.pole, mode.pole.conjugate()
+        return found
 
 
 def ring_down(times: Sequence[float] | Array, signals: Sequence[float] | Array, n_modes: int | None = None) -> RingDown:
