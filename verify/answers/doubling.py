@@ -133,12 +133,7 @@ def _timed(job: Callable[[], T]) -> tuple[float, T | str]:
 
 
 def _smallest(
-    run: Callable[[int, float], Tried],
-    error: float,
-    first: int,
-    fewest: int,
-    tighter: float,
-    slower: float = SLOWER,
+    run: Callable[[int, float], Tried], error: float, first: int, fewest: int, tighter: float, slower: float = SLOWER
 ) -> Tried:
     """The smallest number, from `fewest` on, and its loosest tolerance, within the error; else the best of the runs."""
     tolerance, found = TOLERANCE, run(first, TOLERANCE)

@@ -60,9 +60,8 @@ def with_run(result: Result, path: Path, within: float) -> Result:
     rows = list[tuple[object, ...]]()
     for entry, mode in enumerate(ring.modes, start=1):
         one, (hz, zeta) = pairs.get(mode), mode.halves
-        run = one.run if one else {}
+        run = one.run if one else {"mode": "tone", "axis": "bending"} if mode in tones else {}
         name = run["mode"] if run.get("axis") == "bending" else f"{run['mode']} in {run['axis']}" if run else None
-        name = "tone" if mode in tones else name
         first = (entry, name, mode.hz, hz, run.get("simulated_hz"), run.get("meant_hz"), one and one.off)
         rows.append((*first, mode.zeta, zeta, run.get("simulated_damping"), run.get("added")))
     margin, text = _verdict(ring.modes, [*pairs.values()], within)

@@ -50,10 +50,7 @@ def polygon(mode: int, count: int) -> float:
 @case("ring-across-2", 6 / sqrt(4 + TWIST), 1e-15, ACROSS, mode=2, across=True)
 @case("ring-across-3", 24 / sqrt(9 + TWIST), 1e-15, ACROSS, mode=3, across=True)
 def frequency(
-    mode: int,
-    across: bool = False,
-    links: Literal["arcs", "chords", "balanced"] = "arcs",
-    count: int = 40,
+    mode: int, across: bool = False, links: Literal["arcs", "chords", "balanced"] = "arcs", count: int = 40
 ) -> float:
     """Frequency of a closed chain by its eigenproblem; balanced: chords with the centres of mass of the arcs."""
     from scipy.linalg import eigh, null_space

@@ -10,15 +10,7 @@ from verify.answers.chains import engine_chain
 from verify.answers.curves import curve_chain
 from verify.answers.ringing import with_run
 from verify.commands.choose import relative_error
-from verify.commands.shared import (
-    CHAINS,
-    BeamCommand,
-    Seconds,
-    format_options,
-    overrides_option,
-    scene_argument,
-    show,
-)
+from verify.commands.shared import CHAINS, BeamCommand, Seconds, format_options, overrides_option, scene_argument, show
 from verify.engines.damping import EXAMPLES
 from verify.engines.judgement import judge_file
 from verify.errors import InputError, printable

@@ -34,9 +34,7 @@ from verify.validation import Relative, typed
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory",
-    type=click.Choice(THEORIES),
-    help="Of the exact beam. Default: that of the list; in space, rayleigh.",
+    "--theory", type=click.Choice(THEORIES), help="Of the exact beam. Default: that of the list; in space, rayleigh."
 )
 @click.option("--drive", metavar="HZ", help="FILE is a record of a steady vibration at it; 'scene': that of the drive.")
 @click.option("--at", "places", multiple=True, metavar="X", help="Place of each signal of a steady record: 0.3m.")

@@ -89,12 +89,7 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def show(
-    result: Result,
-    *,
-    as_json: bool = False,
-    as_csv: bool = False,
-    as_markdown: bool = False,
-    charts: str | None = None,
+    result: Result, *, as_json: bool = False, as_csv: bool = False, as_markdown: bool = False, charts: str | None = None
 ) -> None:
     """Print a result on standard output: for a person, or in one of the formats for programs; write its charts.
 

@@ -184,12 +184,7 @@ class _Run:
         return None
 
     def march(
-        self,
-        times: Array,
-        start: Array | None,
-        start_rate: Array | None,
-        progress: Callable[[float], None],
-        pace: Pace,
+        self, times: Array, start: Array | None, start_rate: Array | None, progress: Callable[[float], None], pace: Pace
     ) -> NonlinearMotion:
         """Steps to the last time, interpolated to all."""
         model, end = self.model, float(times[-1])

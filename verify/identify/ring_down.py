@@ -85,13 +85,13 @@ class RingDown:
         `expected` frequencies, Hz, by the factor of the strongest mode, are none: those of pinned beams are sums, too.
         """
         found, poles = list[RingMode](), list[complex]()
-        strong = sorted(self.modes, key=lambda mode: max(mode.amplitude), reverse=True)
+        strong = sorted(self.modes, key=lambda mode: -max(mode.amplitude))
         factor = min((strong[0].hz / hz for hz in expected), key=lambda ratio: abs(log(ratio)), default=1.0)
         for mode in strong:
-            near = hypot(mode.halves[0], mode.halves[1] * mode.hz) + SHIFT * mode.hz
+            near = min(3.0 * (hypot(mode.halves[0], mode.halves[1] * mode.hz) + SHIFT * mode.hz), LOOSE * mode.hz)
             sums = (sum(some) for n in (2, 3) for some in combinations_with_replacement(poles, n))
             known = any(abs(mode.hz / (factor * hz) - 1.0) < EXPECTED for hz in expected)
-            if not known and any(abs(mode.pole - one) < min(3.0 * near, LOOSE * mode.hz) for one in sums):
+            if not known and any(abs(mode.pole - one) < near for one in sums):
                 found.append(mode)
             else:
                 poles += mode.pole, mode.pole.conjugate()

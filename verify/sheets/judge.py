@@ -65,7 +65,8 @@ def judge_case(
         raise InputError(f"counts = {list(counts)}: give one for each of the {len(records)} records")
     for count in counts or ():
         check_integer("counts", count, 1)
-    figures = [one if within is None or one.read == "first" else _limited(one, within) for one in sheet.figures]
+    given = [within is not None and one.read != "first" and one.exact for one in sheet.figures]
+    figures = [replace(one, within=within) if own else one for one, own in zip(sheet.figures, given, strict=True)]
     sizes: Sequence[int | None] = counts or [None] * len(records)
     read = [Run(sheet, Path(path), size) for path, size in zip(records, sizes, strict=True)]
     runs = [[_read(sheet, one, run) for one in figures] for run in read]
@@ -122,10 +123,6 @@ def _tables(
         heads = [Column("figure"), Column("observed order", format=".3g"), Column("expected, at least")]
         tables.append(Table("Orders", heads, shown))
     return tables
-
-
-def _limited(figure: Figure, within: float) -> Figure:
-    return replace(figure, within=within) if figure.exact else figure
 
 
 def _read(sheet: Sheet, figure: Figure, run: Run) -> Read:

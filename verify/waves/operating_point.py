@@ -48,7 +48,7 @@ def best_frequency(case: DrivenCase, span: float = SEARCH_SPAN, window: Window |
     if least.at_edge:
         raise InputError(
             f"span = {span!r}: the reflection still falls at the edge of the search, {least.x:.6g} Hz, give "
-            "wave.best_frequency a wider span, or another frequency_hz"
+            f"wave.best_frequency span={min(4.0 * span, 0.45):g}, or another frequency_hz"
         )
     return least.x
 
