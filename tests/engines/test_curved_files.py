@@ -278,6 +278,32 @@ def test_a_joint_off_a_law_that_varies_has_the_stiffness_by_it(joint, law, tmp_p
     assert not (tmp_path / "out.xml").exists()
 
 
+UNEVEN = np.append(0.0, np.cumsum(np.random.default_rng(21).uniform(0.6, 1.6, 21)))
+SHAPES = {  # angle of the tangent by f = s/L, height, columns by f, points, links
+    "spiral": (lambda f: 5.0 * f**2, 0.0, lambda f: {"EI": 2.0 - 1.2 * f, "rho_A": 0.4 - 0.2 * f}, UNEVEN / UNEVEN[-1], None),
+    "cane": (lambda f: np.clip(f / 0.45 - 11 / 9, 0, 1) * np.pi, 0.0, lambda f: {"EI": 2.0, "rho_A": 0.4},
+             np.linspace(0.0, 1.0, 9) ** 1.3, None),
+    "hook": (lambda f: 3.4 * np.clip(f / 0.6 - 2 / 3, 0, 1), 0.17, lambda f: {"EI": 2.0, "EI2": 3.1, "GJ": 1.4, "rho_A": 0.4,
+             "rho_Ip": 3e-5, "roll": -70.0 * f}, np.linspace(0.0, 1.0, 161), 8),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_few_or_unequal_links_of_a_sharp_or_tapered_curve_have_no_fault(shape, tmp_path):
+    """What a spline through the joints does not know of the curve is no fault of the file."""
+    angle, height, columns, f, count = SHAPES[shape]
+    fine = np.linspace(0.0, 1.0, 4001)
+    middle = 0.5 * (fine[1:] + fine[:-1])
+    step = np.stack([np.cos(angle(middle)), np.sin(angle(middle)), 2.0 * height * middle], axis=1) / 4000
+    places = np.vstack([np.zeros(3), np.cumsum(step, axis=0)])
+    x, y, z = (np.interp(f, fine, one) for one in places.T)
+    path = table(tmp_path / "rod.csv", x=x, y=y, **({"z": z} if height else {}), **columns(f))
+    curve_chain(path, count, error=0.5, path=tmp_path / "rod.xml")
+    found = judge_file(tmp_path / "rod.xml", None, 3, within=0.5).data["chains"][0]
+    assert ([one for one in found["faults"] if one != wall_label("half")], found["odd"]) == ([], [])
+    assert found["frequencies_hz"] == pytest.approx(mujoco_hz(tmp_path / "rod.xml")[:3], rel=1e-6)
+
+
 def test_few_links_show_no_law(tmp_path):
     with pytest.raises(InputError, match=r"too few to tell a law of it from a fault: give 10 links or more$"):
         judged(tmp_path / "few.xml", ring([K, K, 2 * K], lengths=(L,) * 3))

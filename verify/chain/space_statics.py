@@ -40,7 +40,7 @@ BAND = 5
 Curvature = Callable[[Array], Array]
 
 
-class Rod(NamedTuple):
+class ChainAtRest(NamedTuple):
     """A chain of rigid pieces at rest, clamped at the origin, in the axes of the clamp."""
 
     joints: Array  # (N + 1, 3), m, from the clamp to the tip
@@ -67,7 +67,7 @@ class BentInSpace(Struct, frozen=True, eq=False, kw_only=True):
     """(3,), m: of the tip from its place at rest."""
     energy: float
     """Elastic energy, J: of the joints, and of the last half piece under the applied moment."""
-    rod: Rod
+    rod: ChainAtRest
     """At rest."""
     loads: Array
     """(3, 3): force, N, moment, N m, gravity, m/s^2."""
@@ -174,7 +174,7 @@ def _vector(name: str, value: Numbers) -> Array:
 # --- The rod at rest -----------------------------------------------------------------------------------------------
 
 
-def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers | None, wall: Wall) -> Rod:
+def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers | None, wall: Wall) -> ChainAtRest:
     """The chain at rest. Raises InputError."""
     if stiffness is None:
         planes = [_bar(beam, *shafts(beam)[:, :2].tolist()), beam, in_plane(beam, "width")]
@@ -188,7 +188,7 @@ def _rod(beam: Beam, count: int, curvature: Curvature | None, stiffness: Numbers
     bars = np.array([plane.pieces[-1].bending_stiffness for plane in planes])
     joints, middles, axes = _at_rest(system.nodes, curvature or (lambda s: np.zeros((len(s), 3))))
     springs = np.stack([one.stiffness for one in (system, *others)], axis=1)
-    return Rod(joints, middles, axes, springs, masses, 0.5 * system.lengths[-1] / bars)
+    return ChainAtRest(joints, middles, axes, springs, masses, 0.5 * system.lengths[-1] / bars)
 
 
 def _bar(beam: Beam, *pieces: tuple[float, float]) -> Beam:
@@ -240,7 +240,7 @@ class Joints(NamedTuple):
     stiffness: Array  # (N, 3, 3), symmetric
 
 
-def _joints(rod: Rod, rotations: Array) -> Joints:
+def _joints(rod: ChainAtRest, rotations: Array) -> Joints:
     """Moments R J^-1(phi) K phi of the joints and the symmetric part of their derivatives by R^T w."""
     from scipy.spatial.transform import Rotation
 
@@ -271,7 +271,7 @@ def _coefficients(t2: Array) -> tuple[Array, Array]:
     return np.where(small, series, rest / (4.0 * h**2)), np.where(small, 1 / 360 + t2 * (1 / 7560 + t2 / 201600), slope)
 
 
-def _newton(rod: Rod, start: Array, loads: Array) -> Array | None:
+def _newton(rod: ChainAtRest, start: Array, loads: Array) -> Array | None:
     """Rotations in equilibrium under (force, moment, gravity), (3, 3), near a start on the path; None without."""
     from scipy.linalg import LinAlgError, solve_banded
     from scipy.spatial.transform import Rotation
@@ -308,7 +308,7 @@ def _positive(bands: Array) -> bool:
     return True
 
 
-def _equations(rod: Rod, rotations: Array, loads: Array) -> tuple[Array, Array, Array, float]:
+def _equations(rod: ChainAtRest, rotations: Array, loads: Array) -> tuple[Array, Array, Array, float]:
     """First and second derivatives of the potential energy by the spins, and the tolerance of the first.
 
     (N, 3), N m; blocks (N, 3, 3) of a piece and (N - 1, 3, 3) of one with the next.

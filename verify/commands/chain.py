@@ -29,12 +29,7 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
 @click.command(cls=BeamCommand)
 @scene_argument
 @overrides_option
-@click.option(
-    "--count",
-    type=int,
-    metavar="N",
-    help="Links. Default: the fewest within --error at --mode; of a curve from point to point.",
-)
+@click.option("--count", type=int, metavar="N", help="Links. Default: the fewest within --error, or a curve's points.")
 @click.option("--mode", type=click.IntRange(1, 100), default=3, show_default=True, metavar="N", help="Highest mode.")
 @click.option("--error", default="1%", show_default=True, metavar="E", help="Largest relative frequency error.")
 @click.option(
@@ -42,14 +37,12 @@ RULES = ", ".join(name for name, rule in WALLS.items() if not rule.first)
     default=DEFAULT.wall,
     show_default=True,
     metavar="RULE",
-    help=f"Joints at a clamped end of a straight beam: {RULES}.",
+    help=f"Joints at a straight clamped end: {RULES}",
 )
 @click.option("--space", "in_space", is_flag=True, help="Both bending planes and torsion.")
 @click.option("--section", default="", metavar="PHRASE", help="Of a curve: 'round 2 mm E=1GPa rho=1.2g/cm3'.")
 @click.option("--damping", default="0", metavar="Z", help=f"Damping ratio by dashpots, of mode 1, or {EXAMPLES[4:]}.")
-@click.option(
-    "--engine", metavar="NAME[:INTEGRATOR]", default="", help="It runs in: MuJoCo, Exudyn:RK44. Default: --to's."
-)
+@click.option("--engine", metavar="NAME[:INTEGRATOR]", default="", help="MuJoCo, Exudyn:RK44. Default: that of --to.")
 @click.option("--step", "time_step", metavar="TIME", help="Choose links, integrator, armature by which it runs: 2ms.")
 @click.option("--to", "path", metavar="FILE", help=".xml (MJCF), .sdf, .urdf, _exudyn.py, _pinocchio.py, .json, .csv.")
 @format_options

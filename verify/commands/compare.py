@@ -20,21 +20,15 @@ from verify.validation import Relative, typed
 @shared.scene_argument
 @click.argument("words", nargs=-1, metavar="FILE | FREQUENCIES...")
 @shared.overrides_option
-@click.option(
-    "--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements of the model. Default: any."
-)
+@click.option("--count", type=click.IntRange(min=1), metavar="N", help="Segments or elements. Default: any number.")
 @click.option("--modes", "shapes", metavar="FILE", help="Mode shapes: x in the first column, then one column a mode.")
 @click.option("--model", metavar="MODULE:FUNCTION", help="A Python model (beam, n_modes, count) -> frequencies in Hz.")
-@click.option(
-    "--unit",
-    type=click.Choice(list(UNITS)),
-    help="Of the list. Default: its header's, else the one that fits the beam.",
-)
+@click.option("--unit", type=click.Choice(list(UNITS)), help="Of the list. Default: its header's, else by the beam.")
 @click.option("--kind", type=click.Choice(KINDS), help="Candidates of one kind only.")
 @click.option("--mode", type=click.IntRange(min=1), metavar="N", help="Mode of the required N. Default: the last.")
 @click.option("--within", metavar="E", default="1%", show_default=True, help="Acceptance: largest error of a mode.")
 @click.option(
-    "--theory", type=click.Choice(THEORIES), help="Of the exact beam. Default: that of the list; in space, rayleigh."
+    "--theory", type=click.Choice(THEORIES), help="Of the beam. Default: that of the list; rayleigh in space."
 )
 @click.option("--drive", metavar="HZ", help="FILE is a record of a steady vibration at it; 'scene': that of the drive.")
 @click.option("--at", "places", multiple=True, metavar="X", help="Place of each signal of a steady record: 0.3m.")

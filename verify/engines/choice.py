@@ -26,8 +26,6 @@ MARGIN = 0.9
 """Largest fraction of the stability limit: at the limit a motion does not decay."""
 FOURTH_ORDER = 1.0 / 12.0
 """Newmark's beta whose frequencies are of order 4: less armature costs accuracy and wins no step."""
-
-
 WEIGHTED = "MuJoCo", "Drake", "Newton"
 """Engines whose joints have an armature."""
 ARMATURE = (

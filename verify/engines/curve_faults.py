@@ -6,6 +6,7 @@ import numpy as np
 
 from verify.arrays import Array
 from verify.engines.curved import CurvedChain
+from verify.engines.description import AXES
 from verify.engines.line import Line
 from verify.engines.meant_rod import TILT, along_curve, largest_nearby
 from verify.engines.stiffness_law import first, named
@@ -22,8 +23,6 @@ INERTIA, CENTRE = 0.1, 0.02
 """Relative difference of an inertia, and distance of a centre of mass over the length, from which a link differs."""
 LOST = 0.01, 0.2
 """Difference, rad and relative, between rest angles and those by the links from which they are no rounding."""
-COLUMNS = {"bending": 1, "width": 2, "torsion": 0}
-"""Of the axes of a rod at its joints."""
 
 
 def links_off(lines: list[Line], meant: CurvedChain, errors: Array) -> list[str]:
@@ -66,7 +65,7 @@ def hinges_off(lines: list[Line], meant: CurvedChain) -> list[str]:
     unknown = SHARE * rest + JUMPED * near @ abs(np.diff(rest))
     texts, worst, count = list[str](), 0.0, 0
     for line in lines:
-        off = np.linalg.norm(np.cross(line.curve.hinges, meant.axes_at[:, :, COLUMNS[line.axis]]), axis=1)
+        off = np.linalg.norm(np.cross(line.curve.hinges, meant.axes_at[:, :, (AXES.index(line.axis) + 1) % 3]), axis=1)
         odd = np.flatnonzero(off > np.maximum(TILT, unknown))
         texts += [f"{line.joints[j] or 'the wall'} ({np.degrees(off[j]):.2g} degrees)" for j in odd]
         worst, count = max(worst, *off[odd], 0.0), max(count, len(odd))
@@ -84,7 +83,6 @@ def lost_angles(lines: list[Line]) -> list[tuple[str, float, str]]:
     (places, directions, (_, centres, _), _, bent), lengths = lines[0].curve, lines[0].links[:, :1]
     arms, turns = centres - places[:-1], np.diff(directions, axis=0)
     by = -12.0 * (arms - np.einsum("ni,ni->n", arms, directions)[:, None] * directions) / lengths
-    sizes = np.linalg.norm(by, axis=1)
     right = 0.5 * (by[1:] + by[:-1])
     if not bent:  # hinges across lean to the same side of every link
         lean = [np.einsum("ni,ni->n", one.curve.hinges, directions) for one in lines if one.axis != "torsion"]
@@ -92,7 +90,7 @@ def lost_angles(lines: list[Line]) -> list[tuple[str, float, str]]:
         if abs(most).max() > TILT and total > len(directions) * TILT:
             text = f"hinges across are up to {np.degrees(abs(most).max()):.2g} degrees off the axes of the links"
             return [(text, total, "give the bodies the angles of the curve at rest, or turn the hinges")]
-        if np.median(sizes) < 0.5 * sizes.max():  # a body on one link or another
+        if np.median(sizes := np.linalg.norm(by, axis=1)) < 0.5 * sizes.max():  # a body on one link or another
             return []
     if bent and along_curve(lines)[1]:
         around, size = 0.5 * (turns[2:] + turns[:-2]), np.linalg.norm(turns, axis=1)

@@ -1,7 +1,4 @@
-"""A chain of a file that is curved at rest, or graded in mass and stiffness, against the rod that it means.
-
-The reference is that rod, clamped and free (`meant_rod`).
-"""
+"""A chain of a file that is curved at rest, or graded in mass and stiffness, against the clamped rod that it means."""
 
 from dataclasses import replace as with_fields
 from typing import Any
@@ -110,8 +107,7 @@ def _check(lines: list[Line], name: str) -> None:
     for line in lines:
         if (free := np.flatnonzero((line.springs == 0.0) | (np.isnan(line.springs) & (np.arange(len(off)) > 0)))).size:
             joint = shown(line.joints[free[0]] or lines[0].joints[free[0]])
-            text = "has no stiffness about an axis of the others"
-            raise InputError(f"{name}: joint {joint} {text}, on a curve give it one")
+            raise InputError(f"{name}: joint {joint} has no stiffness about an axis of the others, give it one")
 
 
 def _chain(lines: list[Line], springs: list[Array], meant: CurvedChain) -> CurvedChain:

@@ -39,9 +39,7 @@ class Integrator(NamedTuple):
 INTEGRATORS = (
     Integrator("MuJoCo", "Euler", IMPLICIT_DASHPOTS, "4.0.0"),
     Integrator("MuJoCo", "implicit", IMPLICIT_DASHPOTS, "4.0.0"),
-    Integrator(
-        "MuJoCo", "implicitfast", IMPLICIT_DASHPOTS, "4.0.0", "springs are explicit in it: the limit is Euler's"
-    ),
+    Integrator("MuJoCo", "implicitfast", IMPLICIT_DASHPOTS, "4.0.0", "its springs are explicit: the limit is Euler's"),
     Integrator("MuJoCo", "Euler without eulerdamp", EXPLICIT_DASHPOTS, "4.0.0"),
     Integrator("MuJoCo", "RK4", RK4, "4.0.0"),
     Integrator("MuJoCo", "discrete", IMPLICIT_EULER, "4.0.0"),

@@ -139,13 +139,12 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
     mains, (places, directions, lengths, curved) = [members[0] for _, members in parts], _links(parts, name)
     turned = _axes(parts, directions, name, curved)
     whole = [_joined(members) for _, members in parts]
-    masses, inertias = np.array([one.mass for one in whole]), np.array([one.inertia for one in whole])
-    centre = np.einsum("ni,ni->n", np.array([one.centre for one in whole]) - places, directions)
+    masses, centres, inertias = (np.array([getattr(one, at) for one in whole]) for at in ("mass", "centre", "inertia"))
+    centre = np.einsum("ni,ni->n", centres - places, directions)
     prism, spins = masses * lengths**2 / 6.0, np.einsum("ni,nij,nj->n", directions, inertias, directions)
     apart = np.trace(inertias, axis1=1, axis2=2) - prism - 2.0 * spins
     found, solid = [], bool(np.median(abs(apart) / (spins + 1e-6 * prism)) < 0.05)
     ends = np.vstack([places, places[-1] + lengths[-1] * directions[-1]])
-    bodies = masses, np.array([one.centre for one in whole]), inertias
     for axis, about in zip(AXES, turned, strict=True):
         own = [[move for move in moves if abs(move.axis @ e) > 0.8] for e, (moves, _) in zip(about, parts, strict=True)]
         if not any(move.stiffness for moves in own for move in moves):
@@ -167,7 +166,7 @@ def lines(solids: list[Solid], name: str) -> list[Line]:
         across = np.cross(directions, about)
         seen = _direction(about[0]), _direction(across[0]), _deep(mains, directions, across, solid)
         hinges = np.array([moves[0].axis if moves else e for moves, e in zip(own, about, strict=True)])
-        curve = Curve(ends, directions, bodies, hinges, curved)
+        curve = Curve(ends, directions, (masses, centres, inertias), hinges, curved)
         found.append(Line(axis, joints, springs, np.stack(links, 1), solid, *seen, ball, dashpots, armatures, curve))
     return found
 

@@ -97,13 +97,13 @@ def _smooth(values: Array, places: Array, first: int, few: int, names: list[str]
         if apart[worst] < ROUGH:
             near = slice(first, first + 6)  # a cubic: d^4 of a conical rod to 5e-4, a quadratic to 7e-3
             law[:first] = np.polyval(np.polyfit(places[near], law[near], 3), places[:first])
-            if law.min() <= 0.0:
-                break
-            return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))
-        if len(odd) == few:
+            if law.min() > 0.0:
+                return Law("smooth", law, 0.5 * (law + np.append(law[1:], law[-1])), sorted(odd))
+        elif len(odd) == few:
             break
-        odd.append(first + worst)
-        law[first + worst] = expected[worst]
+        else:
+            odd.append(first + worst)
+            law[first + worst] = expected[worst]
     off = ", ".join(shown(names[j]) for j in sorted(odd) or range(first, len(values)))
     text = f"the stiffness of its joints follows no constant, stepped or smooth law (above all {off})"
     raise InputError(f"{text}: give {SCENE}")
