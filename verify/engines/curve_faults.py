@@ -16,8 +16,8 @@ SHARE, JUMPED, DECAY = 0.1, 0.5, 2.0 - 3.0**0.5
 """Angle of hinges off the axes of a joint over the rest angle and over its changes from which they are named.
 
 Axes by the joints alone are uncertain by a part of the rest angle; by what a cubic spline overshoots at a jump of the
-curvature, 1/(4 3^(1/2)) of the change, which decays from joint to joint. Those of one link are off by half the rest
-angle.
+curvature, 1/(4 3^(1/2)) = 0.14 of the change between even joints, which decays from joint to joint; three times that
+leaves room for uneven ones. Hinges about the axes of one link are off by half the rest angle.
 """
 INERTIA, CENTRE = 0.1, 0.02
 """Relative difference of an inertia, and distance of a centre of mass over the length, from which a link differs."""

@@ -31,6 +31,7 @@ LAWS = {"a constant loss factor": 0.0, "viscosity (in proportion to f)": 1.0, "d
 """Powers of the frequency in damping ratios."""
 FAST = 0.45  # Frequency over the sampling rate above which that of a mode above half the rate may appear
 ALIKE = 0.01  # Relative difference of frequencies up to which they are one
+ROUNDING = 1e-9  # Least sd of a frequency, relative, and of a damping ratio: rounding of a fit without noise
 QUANTILE = 1.96  # Half width of a 95 % interval over its standard deviation
 
 
@@ -76,7 +77,10 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
         if beam.supports != ("clamped", "free"):
             raise InputError(f"beam.supports = {'-'.join(beam.supports)}: a strip is clamped-free, give these")
     modes, left_out = _assigned(beams, rings)
-    data, noise = np.array([(np.log(m.undamped_hz), m.halves[0] / QUANTILE / m.hz) for *_, m in modes]).T
+    hz, zeta = np.array([(one.hz, one.zeta) for *_, one in modes]).T
+    halves = np.array([one.halves for *_, one in modes]) / QUANTILE
+    noise, sd = np.maximum([halves[:, 0] / hz, halves[:, 1]], ROUNDING)
+    data = np.log([one.undamped_hz for *_, one in modes])
     places = [(record, number) for record, number, _ in modes]
     model, both = _model(beams, places, noise), [STIFFNESS, COMPLIANCE]
     fitted, spread = _fit(model, data / noise, both[: len(modes)]), 0.0
@@ -90,7 +94,7 @@ def identify_strip(beams: Sequence[Beam], rings: Sequence[RingDown]) -> Strip:
     if not 0.0 < spread < WIDE:
         fitted, spread = _fit(model, data / noise, both[:1], {COMPLIANCE: 0.0}), 0.0
     compliance = fitted.estimates.get(COMPLIANCE)
-    damping, off = _damping(*np.array([(m.hz, m.zeta, m.halves[1] / QUANTILE) for *_, m in modes]).T), fitted.residuals
+    damping, off = _damping(hz, zeta, sd), fitted.residuals
     more = tuple(left_out), np.expm1(off * noise), fitted.chi2 is None, spread
     return Strip(fitted.estimates[STIFFNESS], compliance, damping, tuple(modes), *more)
 
