@@ -126,7 +126,7 @@ def as_list(modes: Sequence[RingMode], source: str) -> FrequencyList:
 
 
 def listed_modes(ring: RingDown, beam: Beam) -> list[RingMode]:
-    """Modes but tones, and those that decay so fast that what else is in the residuals moves them, where not white."""
+    """Modes without tones and, where the residuals are not white, without heavily damped ones, which these bias."""
     tones = ring.tones(_exact(beam))
     light = [mode for mode in ring.modes if mode not in tones and (ring.white or abs(mode.zeta) < DAMPED)]
     return light or [*ring.modes]

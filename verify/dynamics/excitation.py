@@ -3,7 +3,6 @@
 The forces have a polynomial envelope. A circuit is an actuator of capacitance C with the modal loads b per volt, and
 branches of resistance R, inductance L and capacitance C_s in series that carry the charges Q into it from a source E:
 
-
     L Q'' + R Q' + Q/C_s + V = E,   V = (sum Q - b^T q)/C,   q'' + 2 zeta omega q' + omega^2 q = f + b V.
 
 In x = (q, Q) these are M x'' + D x' + K x = F with symmetric matrices (N. W. Hagood, A. von Flotow, J. Sound Vib.
